@@ -1,0 +1,187 @@
+//! A complete deterministic finite automaton as a dense table.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Alphabet, Symbol, Word};
+
+/// A state's row in the table of its [`Dfa`], from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct StateId(u32);
+
+impl StateId {
+    /// The state at row `index`.
+    ///
+    /// # Panics
+    ///
+    /// If `index` does not fit in 32 bits.
+    pub fn new(index: usize) -> Self {
+        Self(u32::try_from(index).expect("an automaton has fewer than 2^32 states"))
+    }
+
+    /// The row in the table, from 0.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A complete deterministic finite automaton `(Q, Σ, δ, q₀, F)`.
+///
+/// `==` compares the tables; for equality of languages use
+/// [`Dfa::is_equivalent`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Dfa {
+    alphabet: Alphabet,
+    start: StateId,
+    accepting: Vec<bool>,
+    /// Row-major: `delta[state * |Σ| + symbol]`.
+    delta: Vec<StateId>,
+}
+
+/// Why a table is no automaton.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DfaError {
+    /// There is no state.
+    #[error("the automaton has no state: give at least one")]
+    NoStates,
+    /// The start state is not a row of the table.
+    #[error("the start state {start} does not exist: there are {states} states, numbered from 0")]
+    BadStart {
+        /// The start state as given.
+        start: usize,
+        /// The number of states.
+        states: usize,
+    },
+    /// The table does not have one row for every state.
+    #[error("the table has {rows} rows for {states} states: give one row a state")]
+    Rows {
+        /// The number of rows.
+        rows: usize,
+        /// The number of states.
+        states: usize,
+    },
+    /// A row does not have one entry for every symbol.
+    #[error(
+        "row {state} has {entries} entries for {symbols} symbols: give one next state a symbol"
+    )]
+    Columns {
+        /// The row, from 0.
+        state: usize,
+        /// The number of its entries.
+        entries: usize,
+        /// The number of symbols.
+        symbols: usize,
+    },
+    /// An entry names a state that does not exist.
+    #[error(
+        "row {state}, symbol {symbol}: state {target} does not exist, there are {states} states, numbered from 0"
+    )]
+    BadTarget {
+        /// The row, from 0.
+        state: usize,
+        /// The column, from 0.
+        symbol: usize,
+        /// The entry.
+        target: usize,
+        /// The number of states.
+        states: usize,
+    },
+}
+
+impl Dfa {
+    /// The automaton with this table: `delta[state][symbol]` is the next state,
+    /// and `accepting` has one entry a state.
+    ///
+    /// # Errors
+    ///
+    /// If the table is not complete or names a state that does not exist.
+    pub fn new(
+        alphabet: Alphabet,
+        start: usize,
+        accepting: Vec<bool>,
+        delta: &[Vec<usize>],
+    ) -> Result<Self, DfaError> {
+        let states = accepting.len();
+        if states == 0 {
+            return Err(DfaError::NoStates);
+        }
+        if start >= states {
+            return Err(DfaError::BadStart { start, states });
+        }
+        if delta.len() != states {
+            return Err(DfaError::Rows {
+                rows: delta.len(),
+                states,
+            });
+        }
+        let symbols = alphabet.len();
+        let mut table = Vec::with_capacity(states * symbols);
+        for (state, row) in delta.iter().enumerate() {
+            if row.len() != symbols {
+                return Err(DfaError::Columns {
+                    state,
+                    entries: row.len(),
+                    symbols,
+                });
+            }
+            for (symbol, &target) in row.iter().enumerate() {
+                if target >= states {
+                    return Err(DfaError::BadTarget {
+                        state,
+                        symbol,
+                        target,
+                        states,
+                    });
+                }
+                table.push(StateId::new(target));
+            }
+        }
+        Ok(Self {
+            alphabet,
+            start: StateId::new(start),
+            accepting,
+            delta: table,
+        })
+    }
+
+    /// The alphabet over which this automaton reads.
+    pub fn alphabet(&self) -> &Alphabet {
+        &self.alphabet
+    }
+
+    /// The number of states, at least 1.
+    pub fn size(&self) -> usize {
+        self.accepting.len()
+    }
+
+    /// All states in the order of the table.
+    pub fn states(&self) -> impl DoubleEndedIterator<Item = StateId> + ExactSizeIterator + use<> {
+        (0..self.size()).map(StateId::new)
+    }
+
+    /// The state before the first symbol.
+    pub fn start(&self) -> StateId {
+        self.start
+    }
+
+    /// Whether a word that ends in `state` is accepted.
+    pub fn is_accepting(&self, state: StateId) -> bool {
+        self.accepting[state.index()]
+    }
+
+    /// The state after reading `symbol` in `state`.
+    pub fn next(&self, state: StateId, symbol: Symbol) -> StateId {
+        self.delta[state.index() * self.alphabet.len() + symbol.index()]
+    }
+
+    /// The state in which `word` ends.
+    pub fn run(&self, word: &Word) -> StateId {
+        word.iter()
+            .fold(self.start, |state, symbol| self.next(state, symbol))
+    }
+
+    /// Whether `word` is in the language.
+    pub fn accepts(&self, word: &Word) -> bool {
+        self.is_accepting(self.run(word))
+    }
+}

@@ -1,0 +1,1 @@
+//! Scripted teaching runs, and the tables made of them.

@@ -1,0 +1,71 @@
+//! The commands of the `memrep` binary: one file a command.
+//!
+//! Results go to stdout, progress and errors to stderr. The exit status is 0
+//! for done, 1 where the answer is "no", 2 for bad input or usage.
+
+mod convert;
+mod equivalent;
+mod identify;
+mod learn;
+#[cfg(feature = "server")]
+mod serve;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Learns a formal task specification from comparisons and membership answers.
+#[derive(Debug, Parser)]
+#[command(
+    name = "memrep",
+    version,
+    about,
+    args_conflicts_with_subcommands = true
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[cfg(feature = "server")]
+    #[command(flatten)]
+    serve: serve::Args,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Serve the pages and the API (also what `memrep` alone does).
+    #[cfg(feature = "server")]
+    Serve(serve::Args),
+    /// Learn a target from a scripted teacher.
+    Learn(learn::Args),
+    /// Find the smallest automaton consistent with a sample.
+    Identify(identify::Args),
+    /// Compare the languages of two automata.
+    Equivalent(equivalent::Args),
+    /// Convert automata and samples between file formats.
+    Convert(convert::Args),
+}
+
+/// Parses the command line, runs the command, and reports what went wrong.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let result = match cli.command {
+        Some(Command::Learn(args)) => learn::run(args),
+        Some(Command::Identify(args)) => identify::run(args),
+        Some(Command::Equivalent(args)) => equivalent::run(args),
+        Some(Command::Convert(args)) => convert::run(args),
+        #[cfg(feature = "server")]
+        Some(Command::Serve(args)) => serve::run(args),
+        #[cfg(feature = "server")]
+        None => serve::run(cli.serve),
+        #[cfg(not(feature = "server"))]
+        None => {
+            use clap::CommandFactory;
+            let _ = Cli::command().print_help();
+            return ExitCode::from(2);
+        }
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::from(2)
+    })
+}

@@ -1,0 +1,12 @@
+//! `memrep serve`.
+
+use std::process::ExitCode;
+
+/// Arguments of `memrep serve`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {}
+
+/// Runs the command.
+pub(crate) fn run(_args: Args) -> anyhow::Result<ExitCode> {
+    anyhow::bail!("not there yet")
+}

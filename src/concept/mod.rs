@@ -1,0 +1,58 @@
+//! What can be learned: a class of concepts, seen through the evidence.
+//!
+//! A class knows which of its concepts are consistent, smallest first, and on
+//! which atoms two of them differ. It must not know bandits, costs or people.
+
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use crate::evidence::{AnswerId, Budget, Fact};
+pub use crate::identify::{Cause, Contradiction, Failure};
+
+/// Different concepts of the smallest consistent size.
+#[derive(Clone, Debug)]
+pub struct Sample<C> {
+    /// At least one; no two contain the same atoms.
+    pub concepts: Vec<C>,
+    /// Whether there are no others of this size.
+    pub complete: bool,
+}
+
+/// A size-indexed class `Φ = Φ₁ ∪ Φ₂ ∪ …` of finite parts (Remark 5.1.2).
+pub trait ConceptClass {
+    /// One concept `φ`.
+    type Concept: Clone + PartialEq + Debug;
+    /// One element of the universe.
+    type Atom: Clone + Ord + Hash + Debug;
+
+    /// Adds a fact; `None` for one that is known from the start.
+    fn add(&mut self, answer: Option<AnswerId>, fact: Fact<Self::Atom>);
+
+    /// Takes back all facts of an answer.
+    fn retract(&mut self, answer: AnswerId);
+
+    /// Whether `atom ∈ concept`.
+    fn contains(&self, concept: &Self::Concept, atom: &Self::Atom) -> bool;
+
+    /// Up to `count` concepts of the smallest consistent size, a function of the
+    /// standing facts and `seed` alone.
+    ///
+    /// # Errors
+    ///
+    /// If no concept within the class's bound is consistent, or the budget ends.
+    fn sample(
+        &mut self,
+        count: usize,
+        seed: u64,
+        budget: &mut Budget,
+    ) -> Result<Sample<Self::Concept>, Failure>;
+
+    /// Up to `count` of the simplest atoms that `inside` contains and `outside`
+    /// does not, simplest first; none exactly if `inside ⊆ outside`.
+    fn witnesses(
+        &self,
+        inside: &Self::Concept,
+        outside: &Self::Concept,
+        count: usize,
+    ) -> Vec<Self::Atom>;
+}

@@ -1,0 +1,1 @@
+//! Pictures of automata as SVG.

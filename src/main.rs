@@ -1,0 +1,7 @@
+//! The `memrep` command: parses its arguments and hands over to [`memrep::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    memrep::cli::main()
+}

@@ -1,0 +1,1 @@
+//! Scripted teachers and the targets they teach. Must not know learners.

@@ -1,0 +1,1 @@
+//! Pages and API over sessions. Must not know SAT or encodings.

@@ -1,0 +1,1 @@
+//! One teaching session: a fold over its log. Must not know how the log is stored.

@@ -1,0 +1,1 @@
+//! Where the logs of sessions last. Must not know the learner.
