@@ -2,6 +2,10 @@
 //!
 //! Knows words and facts; it must not know who asks, or why.
 
+mod engine;
+mod problem;
+mod tree;
+
 use automata::{Alphabet, Dfa, Word};
 
 use crate::evidence::{AnswerId, Budget, Fact};
