@@ -4,6 +4,7 @@
 
 mod engine;
 mod problem;
+mod sat;
 mod tree;
 
 use automata::{Alphabet, Dfa, Word};
