@@ -3,6 +3,7 @@
 //! A class knows which of its concepts are consistent, smallest first, and on
 //! which atoms two of them differ. It must not know bandits, costs or people.
 
+mod dfa;
 mod finite;
 mod preorder;
 
@@ -11,6 +12,7 @@ use std::hash::Hash;
 
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure};
+pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use preorder::Preorder;
 
