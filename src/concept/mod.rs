@@ -3,11 +3,18 @@
 //! A class knows which of its concepts are consistent, smallest first, and on
 //! which atoms two of them differ. It must not know bandits, costs or people.
 
+mod dfa;
+mod finite;
+mod preorder;
+
 use std::fmt::Debug;
 use std::hash::Hash;
 
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure};
+pub use dfa::DfaClass;
+pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
+pub use preorder::Preorder;
 
 /// Different concepts of the smallest consistent size.
 #[derive(Clone, Debug)]
@@ -55,4 +62,14 @@ pub trait ConceptClass {
         outside: &Self::Concept,
         count: usize,
     ) -> Vec<Self::Atom>;
+
+    /// The atoms of the universe, simplest first; endless for infinite ones.
+    fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
+
+    /// Orders concepts of the same size: the least is the simplest to read and
+    /// the one to show. It has no part in which questions are asked.
+    fn complexity(&self, concept: &Self::Concept) -> usize {
+        let _ = concept;
+        0
+    }
 }

@@ -144,6 +144,25 @@ impl Dfa {
         })
     }
 
+    /// The automaton with a table that the operations of this crate have made,
+    /// row-major.
+    pub(crate) fn from_table(
+        alphabet: Alphabet,
+        start: StateId,
+        accepting: Vec<bool>,
+        delta: Vec<StateId>,
+    ) -> Self {
+        debug_assert!(start.index() < accepting.len());
+        debug_assert_eq!(delta.len(), accepting.len() * alphabet.len());
+        debug_assert!(delta.iter().all(|q| q.index() < accepting.len()));
+        Self {
+            alphabet,
+            start,
+            accepting,
+            delta,
+        }
+    }
+
     /// The alphabet over which this automaton reads.
     pub fn alphabet(&self) -> &Alphabet {
         &self.alphabet
@@ -171,6 +190,8 @@ impl Dfa {
 
     /// The state after reading `symbol` in `state`.
     pub fn next(&self, state: StateId, symbol: Symbol) -> StateId {
+        // A foreign symbol would read another state's row.
+        debug_assert!(symbol.index() < self.alphabet.len());
         self.delta[state.index() * self.alphabet.len() + symbol.index()]
     }
 
