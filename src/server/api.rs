@@ -223,7 +223,7 @@ async fn automaton(
         })
         .await?;
     let (hypothesis, task) = shown.ok_or(WebError::NoAutomaton)?;
-    let name = export::file_name(&task, format.extension());
+    let name = export::file_name(&task, format);
     let body = tokio::task::spawn_blocking(move || export::write(&hypothesis, &task, format))
         .await
         .map_err(WebError::internal)??;

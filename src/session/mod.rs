@@ -213,7 +213,6 @@ impl Session {
             }
             Event::Retracted { number } => {
                 self.withdraw(*number)?;
-                self.reopen();
                 self.depart(None);
                 Ok(())
             }
@@ -224,9 +223,6 @@ impl Session {
                 };
                 standing.reply = reply;
                 standing.then = None;
-                let keep = *number;
-                self.standing
-                    .retain(|s| s.number == keep || s.reply != Reply::Correct);
                 self.rebuild()?;
                 self.depart(None);
                 Ok(())
@@ -327,22 +323,6 @@ impl Session {
             Ok(())
         } else {
             Err(format!("the learner has no answer {number} to withdraw"))
-        }
-    }
-
-    /// Once an earlier answer is withdrawn or mended, "this is right" was said
-    /// of something else: it falls with it.
-    fn reopen(&mut self) {
-        let agreed: Vec<u32> = self
-            .standing
-            .iter()
-            .filter(|s| s.reply == Reply::Correct)
-            .map(|s| s.number)
-            .collect();
-        for number in agreed {
-            self.standing.retain(|s| s.number != number);
-            self.withdrawn.insert(number);
-            self.learner.retract(AnswerId(number));
         }
     }
 

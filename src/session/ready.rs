@@ -68,7 +68,7 @@ pub fn ready(name: &str) -> Result<Task, Malformed> {
         "robot" if number.is_none() => Ok(robot()),
         "tomita" => Ok(tomita(within(1, 7)?)),
         "modulo" => Ok(modulo(within(1, 50)?)),
-        "zeros" => Ok(zeros(within(1, 50)?)),
+        "zeros" => Ok(zeros(within(0, 50)?)),
         _ => Err(Malformed::new(
             "",
             format!("there is no task `{name}`: the ready ones are {NAMES}"),
