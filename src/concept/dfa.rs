@@ -70,14 +70,4 @@ impl ConceptClass for DfaClass {
     fn atoms(&self) -> Box<dyn Iterator<Item = Word> + '_> {
         Box::new(self.alphabet.words())
     }
-
-    /// The number of transitions that leave their state: automata with many
-    /// self-loops are the easiest to read.
-    fn complexity(&self, concept: &Dfa) -> usize {
-        concept
-            .states()
-            .flat_map(|state| concept.alphabet().symbols().map(move |a| (state, a)))
-            .filter(|&(state, symbol)| concept.next(state, symbol) != state)
-            .count()
-    }
 }

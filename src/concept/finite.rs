@@ -167,6 +167,7 @@ impl FiniteClass {
             } else {
                 Cause::States { bound }
             },
+            minimal: true,
         }
     }
 }
@@ -216,7 +217,9 @@ impl ConceptClass for FiniteClass {
             consistent
         } else {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
-            consistent.partial_shuffle(&mut random, count).0.to_vec()
+            let mut drawn = consistent.partial_shuffle(&mut random, count).0.to_vec();
+            drawn.sort_unstable();
+            drawn
         };
         Ok(Sample { concepts, complete })
     }

@@ -19,7 +19,7 @@ pub use preorder::Preorder;
 /// Different concepts of the smallest consistent size.
 #[derive(Clone, Debug)]
 pub struct Sample<C> {
-    /// At least one; no two contain the same atoms.
+    /// At least one; no two contain the same atoms; simplest first.
     pub concepts: Vec<C>,
     /// Whether there are no others of this size.
     pub complete: bool,
@@ -65,11 +65,4 @@ pub trait ConceptClass {
 
     /// The atoms of the universe, simplest first; endless for infinite ones.
     fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
-
-    /// Orders concepts of the same size: the least is the simplest to read and
-    /// the one to show. It has no part in which questions are asked.
-    fn complexity(&self, concept: &Self::Concept) -> usize {
-        let _ = concept;
-        0
-    }
 }

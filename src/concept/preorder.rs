@@ -150,6 +150,7 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
         Some(Contradiction {
             answers: minimal.into_iter().collect(),
             cause,
+            minimal: true,
         })
     }
 

@@ -41,12 +41,7 @@ impl<C: ConceptClass> Learner<C> {
             Err(Failure::Contradiction(conflict)) => return (Step::Conflict(conflict), None),
             Err(Failure::OverBudget { .. }) => return self.without_candidates(random.random()),
         };
-        let simplest = sample
-            .concepts
-            .iter()
-            .enumerate()
-            .min_by_key(|(place, concept)| (self.class.complexity(concept), *place))
-            .map(|(_, concept)| concept.clone());
+        let simplest = sample.concepts.first().cloned();
         let hurried = !sample.complete && sample.concepts.len() < SAMPLE;
         let step = match (&sample.concepts[..], sample.complete) {
             ([only], true) => ask(equivalence(only), None, false),
@@ -54,7 +49,7 @@ impl<C: ConceptClass> Learner<C> {
             (concepts, _) => {
                 let (question, round) = self.question(concepts, &mut random).unwrap_or_else(|| {
                     // All that could tell them apart was skipped.
-                    (equivalence(simplest.as_ref().unwrap_or(&concepts[0])), None)
+                    (equivalence(&concepts[0]), None)
                 });
                 ask(question, round, hurried)
             }
