@@ -73,7 +73,10 @@ async fn serve(args: Args) -> anyhow::Result<()> {
     let at = listener.local_addr().context("the address is unknown")?;
     let stop = stop_signal()?;
     println!("memrep is at http://{at}/");
-    println!("Sessions are kept in {}. Stop with Ctrl+C.", args.database.display());
+    println!(
+        "Sessions are kept in {}. Stop with Ctrl+C.",
+        args.database.display()
+    );
     server::run(listener, AppState::new(Arc::new(store)), stop)
         .await
         .context("the server stopped")

@@ -94,7 +94,7 @@ async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
         let (state, open) = match session.position() {
             Position::Thinking => ("thinking", None),
             Position::Asking(number) => ("asking", Some(*number)),
-            Position::Conflict { .. } => ("conflict", None),
+            Position::Conflict(_) => ("conflict", None),
             Position::Done(_) => ("done", None),
         };
         let setup = serde_json::to_value(session.setup()).unwrap_or_default();
@@ -128,11 +128,9 @@ fn describe(session: &Session, position: &Position) -> Value {
             }
             value
         }
-        Position::Conflict { answers, bound } => {
-            let mut value = json!({"kind": "conflict", "answers": answers});
-            if let Some(bound) = bound {
-                value["bound"] = (*bound).into();
-            }
+        Position::Conflict(conflict) => {
+            let mut value = serde_json::to_value(conflict).unwrap_or_default();
+            value["kind"] = "conflict".into();
             value
         }
         Position::Done(hypothesis) => {
@@ -230,17 +228,17 @@ async fn automaton(
     Ok((
         [
             (CONTENT_TYPE, format.media_type().to_owned()),
-            (CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
+            (
+                CONTENT_DISPOSITION,
+                format!("attachment; filename=\"{name}\""),
+            ),
         ],
         body,
     )
         .into_response())
 }
 
-async fn log(
-    State(app): State<AppState>,
-    Path(id): Path<String>,
-) -> Result<Response, ApiError> {
+async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, ApiError> {
     let entries = app.teaching.log(session_id(&id)?).await?;
     let mut lines = String::new();
     for entry in entries {

@@ -24,10 +24,18 @@ pub(crate) enum Format {
 
 /// What the result page offers: format, title, what it is for.
 pub(crate) const OFFERED: [(Format, &str, &str); 5] = [
-    (Format::Json, "JSON", "the automaton, for programs and for memrep itself"),
+    (
+        Format::Json,
+        "JSON",
+        "the automaton, for programs and for memrep itself",
+    ),
     (Format::Svg, "SVG", "the drawing"),
     (Format::Dot, "DOT", "for AALpy, AutomataLib and LearnLib"),
-    (Format::DotPeople, "DOT for people", "the drawing, for Graphviz"),
+    (
+        Format::DotPeople,
+        "DOT for people",
+        "the drawing, for Graphviz",
+    ),
     (Format::Hoa, "HOA", "for Spot, Owl and PRISM"),
 ];
 
@@ -42,7 +50,10 @@ impl Format {
                 let names: Vec<&str> = OFFERED.iter().map(|(format, ..)| format.name()).collect();
                 Malformed::new(
                     "format",
-                    format!("there is no format `{name}`: give one of {}", names.join(", ")),
+                    format!(
+                        "there is no format `{name}`: give one of {}",
+                        names.join(", ")
+                    ),
                 )
             })
     }

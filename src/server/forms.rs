@@ -35,7 +35,10 @@ pub(crate) fn question_number(fields: &Fields<'_>) -> Result<u32, Malformed> {
 }
 
 /// The answer in a JSON body: the keys `answer`, `word` and `label`.
-pub(crate) fn json_reply(fields: &Fields<'_>, alphabet: &Alphabet) -> Result<Reply<Word>, Malformed> {
+pub(crate) fn json_reply(
+    fields: &Fields<'_>,
+    alphabet: &Alphabet,
+) -> Result<Reply<Word>, Malformed> {
     let Some(answer) = fields.get("answer").and_then(Value::as_str) else {
         return Err(Malformed::new("answer", format!("give one of {ANSWERS}")));
     };
@@ -170,8 +173,9 @@ impl Form {
                     ),
                 )
             })?;
-            let word = typed_word(rest, "examples", &alphabet)
-                .map_err(|e| Malformed::new("examples", format!("line {}: {}", i + 1, e.message)))?;
+            let word = typed_word(rest, "examples", &alphabet).map_err(|e| {
+                Malformed::new("examples", format!("line {}: {}", i + 1, e.message))
+            })?;
             let names: Vec<&str> = alphabet.spell(&word).collect();
             examples.push(json!({"word": names, "label": label}));
         }
@@ -245,7 +249,11 @@ mod tests {
         let short = Alphabet::new(["R", "Y", "B"]).unwrap();
         let expected = short.word(["R", "Y", "B"]).unwrap();
         for text in ["R Y B", " RYB ", "R,Y,B", "RY B", "R · Y · B"] {
-            assert_eq!(typed_word(text, "word", &short), Ok(expected.clone()), "{text}");
+            assert_eq!(
+                typed_word(text, "word", &short),
+                Ok(expected.clone()),
+                "{text}"
+            );
         }
         assert_eq!(typed_word("  ", "word", &short), Ok(Word::empty()));
         let long = Alphabet::new(["a", "bc"]).unwrap();
@@ -269,9 +277,21 @@ mod tests {
         for (fields, path, part) in [
             (form(&[]), "symbols", "name the things"),
             (form(&[("symbols", "a a")]), "symbols[1]", "twice"),
-            (form(&[("symbols", "a"), ("examples", "+ a\nb")]), "examples", "line 2: begin"),
-            (form(&[("symbols", "a"), ("examples", "+ b")]), "examples", "line 1: `b`"),
-            (form(&[("symbols", "a"), ("examples", "+ a\n- a")]), "examples[1]", "other label"),
+            (
+                form(&[("symbols", "a"), ("examples", "+ a\nb")]),
+                "examples",
+                "line 2: begin",
+            ),
+            (
+                form(&[("symbols", "a"), ("examples", "+ b")]),
+                "examples",
+                "line 1: `b`",
+            ),
+            (
+                form(&[("symbols", "a"), ("examples", "+ a\n- a")]),
+                "examples[1]",
+                "other label",
+            ),
         ] {
             let error = fields.own_task().unwrap_err();
             assert_eq!(error.path, path);

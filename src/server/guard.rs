@@ -88,10 +88,25 @@ mod tests {
 
     #[test]
     fn only_numbers_and_localhost_are_own_hosts() {
-        for own in ["localhost", "localhost:8080", "LOCALHOST:1", "127.0.0.1:8080", "[::1]:8080", "[::1]", "a.localhost:3"] {
+        for own in [
+            "localhost",
+            "localhost:8080",
+            "LOCALHOST:1",
+            "127.0.0.1:8080",
+            "[::1]:8080",
+            "[::1]",
+            "a.localhost:3",
+        ] {
             assert!(is_own(own), "{own}");
         }
-        for other in ["evil.example", "evil.example:8080", "localhost.evil.example", "", ":80", "127.0.0.1.evil.example"] {
+        for other in [
+            "evil.example",
+            "evil.example:8080",
+            "localhost.evil.example",
+            "",
+            ":80",
+            "127.0.0.1.evil.example",
+        ] {
             assert!(!is_own(other), "{other}");
         }
     }

@@ -15,7 +15,9 @@ use super::export;
 use super::forms::Form;
 use super::views::{Bar, Chip, PastView, RuleView, Shell, WordView, chips, render};
 use crate::learner::{Counts, Question, Reply};
-use crate::session::{Decision, MAX_STATES, Position, Session, Setup, Task, offered, ready};
+use crate::session::{
+    ConflictCause, Decision, MAX_STATES, Position, Session, Setup, Task, offered, ready,
+};
 use crate::store::{Listed, SessionId};
 
 type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
@@ -81,7 +83,11 @@ struct StartPage {
     fault: Option<String>,
 }
 
-async fn start_page(app: &AppState, own: OwnForm, fault: Option<String>) -> Result<Response, WebError> {
+async fn start_page(
+    app: &AppState,
+    own: OwnForm,
+    fault: Option<String>,
+) -> Result<Response, WebError> {
     let sessions = app.teaching.list(20).await?;
     Ok(render(&StartPage {
         shell: Shell::plain("Teach a rule"),
@@ -117,7 +123,11 @@ fn session_card(listed: &Listed) -> Option<SessionCard> {
             "asked" if last["kind"] == "equivalence" => "a rule to look at",
             _ => "a question waits",
         },
-        when: format!("{} {} UTC", listed.last.at.get(..10)?, listed.last.at.get(11..16)?),
+        when: format!(
+            "{} {} UTC",
+            listed.last.at.get(..10)?,
+            listed.last.at.get(11..16)?
+        ),
         at: listed.last.at.clone(),
     })
 }
@@ -185,6 +195,8 @@ struct ConflictPage {
     bar: Bar,
     notice: Option<String>,
     items: Vec<PastView>,
+    cause: ConflictCause,
+    minimal: bool,
     bound: Option<usize>,
     larger: Option<usize>,
 }
@@ -260,16 +272,20 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 hurried: asked.hurried,
             })
         }
-        Position::Conflict { answers, bound } => render(&ConflictPage {
+        Position::Conflict(conflict) => render(&ConflictPage {
             shell,
             bar,
             notice,
-            items: answers
+            items: conflict
+                .answers
                 .iter()
                 .filter_map(|&number| PastView::of(number, session))
                 .collect(),
-            bound: *bound,
-            larger: bound
+            cause: conflict.cause,
+            minimal: conflict.minimal,
+            bound: conflict.bound,
+            larger: conflict
+                .bound
                 .map(|bound| (bound * 2).min(MAX_STATES))
                 .filter(|larger| *larger > task.max_states),
         }),
@@ -291,12 +307,14 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
 }
 
 fn downloads(id: SessionId) -> Vec<Download> {
-    let automata = export::OFFERED.iter().map(|&(format, title, about)| Download {
-        format: format.name(),
-        title,
-        about,
-        href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
-    });
+    let automata = export::OFFERED
+        .iter()
+        .map(|&(format, title, about)| Download {
+            format: format.name(),
+            title,
+            about,
+            href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
+        });
     let log = Download {
         format: "log",
         title: "Log",
@@ -386,8 +404,7 @@ async fn enlarge(
 ) -> Result<Response, PageError> {
     let id = session_id(&id)?;
     let form = read_form(fields)?;
-    let decide =
-        move |session: &Session| Ok(session.enlarge(form.number("max_states")? as usize)?);
+    let decide = move |session: &Session| Ok(session.enlarge(form.number("max_states")? as usize)?);
     act(&app, id, Typed::default(), decide).await
 }
 

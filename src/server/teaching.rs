@@ -83,10 +83,7 @@ impl Teaching {
         let permits = Arc::clone(&self.permits);
         let work = async move {
             let mut held = slot.lock_owned().await;
-            let permit = permits
-                .acquire_owned()
-                .await
-                .map_err(WebError::internal)?;
+            let permit = permits.acquire_owned().await.map_err(WebError::internal)?;
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {

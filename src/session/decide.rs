@@ -230,11 +230,11 @@ impl Session {
         match self.position() {
             Position::Thinking => "the next one is being chosen, ask again".to_owned(),
             Position::Asking(number) => format!("question {number} is open now"),
-            Position::Conflict { answers, .. } if answers.is_empty() => {
+            Position::Conflict(conflict) if conflict.answers.is_empty() => {
                 "what was known at the start needs more states, allow more of them".to_owned()
             }
-            Position::Conflict { answers, .. } => {
-                let numbers: Vec<String> = answers.iter().map(u32::to_string).collect();
+            Position::Conflict(conflict) => {
+                let numbers: Vec<String> = conflict.answers.iter().map(u32::to_string).collect();
                 format!(
                     "the answers to {} cannot all be true, withdraw or change one of them",
                     numbers.join(", ")

@@ -72,17 +72,59 @@ pub enum Event {
     },
     /// The standing answers turned out to contradict each other.
     Conflict {
-        /// A minimal set of them, by question number, ascending.
-        answers: Vec<u32>,
-        /// Where some larger automaton is consistent: the bound that none keeps.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        bound: Option<usize>,
+        /// How.
+        #[serde(flatten)]
+        conflict: Conflict,
     },
     /// The teacher agreed with this automaton.
     Done {
         /// What was learned.
         hypothesis: Automaton,
     },
+}
+
+/// Standing answers that contradict each other.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Conflict {
+    /// The answers, by question number, ascending; empty if what was known at
+    /// the start cannot stand by itself.
+    pub answers: Vec<u32>,
+    /// Why they cannot stand together.
+    pub cause: ConflictCause,
+    /// With [`ConflictCause::States`], the bound that no automaton keeps: a
+    /// larger one would resolve the conflict.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<usize>,
+    /// Whether it is proved that none of the answers can be left out.
+    pub minimal: bool,
+}
+
+/// Why answers cannot stand together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ConflictCause {
+    /// Something would be better than itself.
+    Order,
+    /// Something acceptable would be worse than something that is not.
+    Membership,
+    /// Every automaton that fits has more states than are allowed.
+    States,
+}
+
+impl Conflict {
+    fn of(contradiction: &Contradiction) -> Self {
+        let (cause, bound) = match contradiction.cause {
+            Cause::Order => (ConflictCause::Order, None),
+            Cause::MemRep => (ConflictCause::Membership, None),
+            Cause::States { bound } => (ConflictCause::States, Some(bound)),
+        };
+        Self {
+            answers: contradiction.answers.iter().map(|id| id.0).collect(),
+            cause,
+            bound,
+            minimal: contradiction.minimal,
+        }
+    }
 }
 
 /// A question, as the log and the API show it.
@@ -237,11 +279,7 @@ impl Event {
     /// The entry that says that these answers cannot stand together.
     pub fn conflict(contradiction: &Contradiction) -> Self {
         Self::Conflict {
-            answers: contradiction.answers.iter().map(|id| id.0).collect(),
-            bound: match contradiction.cause {
-                Cause::MemRep => None,
-                Cause::States { bound } => Some(bound),
-            },
+            conflict: Conflict::of(contradiction),
         }
     }
 }

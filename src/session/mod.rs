@@ -23,7 +23,7 @@ use automata::{Alphabet, Dfa, Word};
 pub use automaton::Automaton;
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
-pub use event::{Event, LOG_VERSION, QuestionText, ReplyText};
+pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
 pub use reader::{Fields, Malformed};
 pub use ready::{NAMES as READY_NAMES, offered, ready};
 pub use task::{
@@ -65,13 +65,7 @@ pub enum Position {
     /// The question of this number is open.
     Asking(u32),
     /// Some standing answers contradict each other.
-    Conflict {
-        /// A minimal set of them, ascending; empty if what was known at the
-        /// start needs more states by itself.
-        answers: Vec<u32>,
-        /// The bound on states, where a larger one would resolve it.
-        bound: Option<usize>,
-    },
+    Conflict(Conflict),
     /// The teacher agreed with this automaton.
     Done(Dfa),
 }
@@ -233,12 +227,9 @@ impl Session {
                 self.depart(None);
                 Ok(())
             }
-            Event::Conflict { answers, bound } => {
+            Event::Conflict { conflict } => {
                 self.expect_thinking()?;
-                self.arrive(Position::Conflict {
-                    answers: answers.clone(),
-                    bound: *bound,
-                });
+                self.arrive(Position::Conflict(conflict.clone()));
                 Ok(())
             }
             Event::Done { hypothesis } => {
@@ -398,7 +389,7 @@ impl Session {
                 Question::Equivalence { hypothesis } => Some(hypothesis),
                 _ => None,
             },
-            Position::Thinking | Position::Conflict { .. } => None,
+            Position::Thinking | Position::Conflict(_) => None,
         }
     }
 }
