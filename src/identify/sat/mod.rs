@@ -1,20 +1,24 @@
-//! SAT engines; their place is kept until they move in.
+//! SAT engines: the smallest automata as models of a formula.
 
-use super::engine::{Engine, Query, Verdict};
-use crate::evidence::Budget;
+mod batsat;
+mod canonical;
+mod encoding;
+mod incremental;
+mod solver;
+mod varisat;
 
-struct Absent;
+#[cfg(test)]
+mod tests;
 
-impl Engine for Absent {
-    fn search(&mut self, _query: &Query<'_>, _budget: &mut Budget) -> Verdict {
-        Verdict::OverBudget
-    }
-}
+use super::engine::Engine;
+use incremental::SatEngine;
 
+/// An engine over the solver `varisat`.
 pub(crate) fn varisat_engine() -> Box<dyn Engine + Send> {
-    Box::new(Absent)
+    Box::new(SatEngine::new(varisat::Varisat::new))
 }
 
+/// An engine over the solver `batsat`.
 pub(crate) fn batsat_engine() -> Box<dyn Engine + Send> {
-    Box::new(Absent)
+    Box::new(SatEngine::new(batsat::Batsat::new))
 }
