@@ -218,7 +218,11 @@ impl Engines {
                     return verdict;
                 }
                 // Budget is left, so the engine failed rather than the budget.
-                trusted(self.batsat(), query, budget)
+                let verdict = trusted(self.batsat(), query, budget);
+                if !matches!(verdict, Verdict::OverBudget) || budget.is_spent() {
+                    return verdict;
+                }
+                trusted(&mut self.enumerator, query, budget)
             }
         }
     }
