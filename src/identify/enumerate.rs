@@ -1,8 +1,8 @@
 //! The plain enumerator: depth-first search over canonically numbered automata.
 //!
 //! States are numbered in the order of their first use and the next edge is the
-//! undefined one at which most of the prefix tree waits (fail first), so every
-//! automaton is met once. This beats SAT by an order of magnitude up to about 8
+//! undefined one at which most of the prefix tree waits for every possible
+//! target (fail first), so every automaton is met once. This beats SAT by an order of magnitude up to about 8
 //! states; its time grows with `states^(states * symbols)` in the worst case, so
 //! it stops at a budget of nodes.
 
@@ -17,9 +17,14 @@ use super::instance::Instance;
 use super::partial::{Mark, Partial};
 use crate::evidence::Budget;
 
-/// Nodes after which a listing gives way to random dives, once it has found
-/// something.
+/// Nodes after which a listing gives way to random dives, if it has found
+/// [`SPARSE`] leaves.
 const LISTING: u64 = 3_000;
+/// With fewer leaves, it goes on for so many more nodes.
+const SPARSE_LISTING: u64 = 20_000;
+/// A few hundred leaves in [`LISTING`] nodes: dives then find one in about 100
+/// nodes.
+const SPARSE: usize = 300;
 /// Nodes that the dives of one search may take together.
 const DIVES: u64 = 3_000;
 /// Nodes that listing goes on for at a time where dives found too few.
@@ -43,7 +48,11 @@ impl Engine for Enumerator {
 
         // A small version space is listed, and then drawn from evenly.
         let mut ended = leaves.gather(&mut listing, LISTING, budget);
-        if leaves.is_empty() && !ended {
+        if !ended && leaves.len() < SPARSE {
+            // Dives would mostly miss.
+            ended = leaves.gather(&mut listing, SPARSE_LISTING, budget);
+        }
+        if !ended && leaves.len() == 0 {
             // A hard one: to the first leaf, whatever it takes.
             match listing.next_leaf(u64::MAX, budget) {
                 Reached::Leaf => leaves.push(listing.leaf()),
@@ -51,7 +60,7 @@ impl Engine for Enumerator {
                 Reached::Limit => return Verdict::OverBudget,
             }
         }
-        if ended && leaves.is_empty() {
+        if ended && leaves.len() == 0 {
             return contradictory();
         }
         let mut found = BTreeSet::new();
@@ -184,7 +193,7 @@ impl<'a> Walk<'a> {
         loop {
             if self.fresh {
                 self.fresh = false;
-                let Some(edge) = self.partial.busiest() else {
+                let Some(edge) = self.partial.tightest() else {
                     return Reached::Leaf;
                 };
                 self.choose(edge, rng.as_deref_mut());
@@ -242,8 +251,8 @@ struct Leaves {
 }
 
 impl Leaves {
-    fn is_empty(&self) -> bool {
-        self.leaves.is_empty()
+    fn len(&self) -> usize {
+        self.leaves.len()
     }
 
     fn push(&mut self, leaf: Leaf) {

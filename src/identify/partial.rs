@@ -6,6 +6,9 @@ use super::instance::{Instance, Node};
 /// No state, no node, or no edge.
 pub(crate) const NONE: u32 = u32::MAX;
 
+/// As many pairs of edges and symbols are looked ahead to at most.
+const LARGEST_GLANCE: usize = 1 << 20;
+
 /// What is known of a state's output.
 const REJECT: u8 = 0;
 const ACCEPT: u8 = 1;
@@ -42,6 +45,10 @@ pub(crate) struct Partial<'a> {
     weight: Vec<u32>,
     /// How many of them are labelled, by label.
     labelled: Vec<[u32; 2]>,
+    /// How many of their children are, by label, at `edge * glance + symbol`.
+    beyond: Vec<[u32; 2]>,
+    /// The number of symbols; 0 if that would make `beyond` too large.
+    glance: usize,
     /// Implications between outputs: of the source's acceptance to the target's.
     implied: Vec<(u32, u32)>,
     /// For each implication the one before with the same source, and target.
@@ -62,6 +69,11 @@ impl<'a> Partial<'a> {
     pub(crate) fn new(instance: &'a Instance, limit: usize) -> Self {
         let edges = limit * instance.symbols;
         let nodes = instance.size();
+        let glance = if edges * instance.symbols <= LARGEST_GLANCE {
+            instance.symbols
+        } else {
+            0
+        };
         let mut partial = Self {
             instance,
             limit: limit as u32,
@@ -74,6 +86,8 @@ impl<'a> Partial<'a> {
             behind: vec![NONE; nodes],
             weight: vec![0; edges],
             labelled: vec![[0; 2]; edges],
+            beyond: vec![[0; 2]; edges * glance],
+            glance,
             implied: Vec::new(),
             before: Vec::new(),
             newest: vec![(NONE, NONE); limit],
@@ -122,6 +136,14 @@ impl<'a> Partial<'a> {
             if let Some(label) = self.instance.label[node] {
                 self.labelled[edge][usize::from(label)] -= 1;
             }
+            if self.glance > 0 {
+                for child in self.instance.children(node as Node) {
+                    if let Some(label) = self.instance.label[child as usize] {
+                        let symbol = self.instance.symbol[child as usize] as usize;
+                        self.beyond[edge * self.glance + symbol][usize::from(label)] -= 1;
+                    }
+                }
+            }
         }
         while self.implied.len() > mark.implied as usize {
             let (source, target) = self.implied.pop().expect("longer than the mark");
@@ -163,29 +185,53 @@ impl<'a> Partial<'a> {
         (self.implied.iter().copied()).filter(move |&(source, target)| open(source) && open(target))
     }
 
-    /// The undefined edge at which most waits (fail first), the least of equals;
-    /// none if every node is placed.
-    pub(crate) fn busiest(&self) -> Option<u32> {
+    /// The undefined edge that is likely to fail first: most waits at it for
+    /// every state it may lead to. None if every node is placed.
+    pub(crate) fn tightest(&self) -> Option<u32> {
         let mut best = None;
-        let mut most = 0;
-        for edge in 0..(self.used * self.symbols) as usize {
-            if self.delta[edge] == NONE && self.weight[edge] > most {
-                most = self.weight[edge];
-                best = Some(edge as u32);
+        let (mut best_weight, mut best_targets) = (0_u64, 1_u64);
+        for edge in 0..self.used * self.symbols {
+            let weight = u64::from(self.weight[edge as usize]);
+            if weight == 0 || self.delta[edge as usize] != NONE {
+                continue;
+            }
+            // Targets are counted only as long as the edge may still be best.
+            let mut targets = u64::from(self.used < self.limit);
+            for target in 0..self.used {
+                targets += u64::from(self.may_lead(edge, target));
+                if targets > 1 && weight * best_targets <= best_weight * targets {
+                    break;
+                }
+            }
+            if targets <= 1 {
+                return Some(edge);
+            }
+            if weight * best_targets > best_weight * targets {
+                best = Some(edge);
+                (best_weight, best_targets) = (weight, targets);
             }
         }
         best
     }
 
-    /// Whether the labels that wait at `edge` allow it to lead to `target`: a
-    /// glance that spares most of the vain calls of [`Self::define`].
+    /// Whether the labels that wait at `edge`, and one symbol beyond, allow it
+    /// to lead to a used state: a glance that spares most of the vain calls of
+    /// [`Self::define`].
     pub(crate) fn may_lead(&self, edge: u32, target: u32) -> bool {
-        let labelled = self.labelled[edge as usize];
-        match self.output[target as usize] {
+        let fits = |output: u8, labelled: [u32; 2]| match output {
             REJECT => labelled[1] == 0,
             ACCEPT => labelled[0] == 0,
             _ => true,
+        };
+        if !fits(self.output[target as usize], self.labelled[edge as usize]) {
+            return false;
         }
+        let row = (target * self.symbols) as usize;
+        let beyond = edge as usize * self.glance;
+        let nexts = &self.delta[row..row + self.glance];
+        (nexts.iter())
+            .zip(&self.beyond[beyond..beyond + self.glance])
+            .all(|(&next, &labelled)| next == NONE || fits(self.output[next as usize], labelled))
     }
 
     /// Defines an undefined edge, to a used state or to the first unused one;
@@ -244,21 +290,40 @@ impl<'a> Partial<'a> {
             let edge = (state * self.symbols + instance.symbol[child as usize]) as usize;
             let target = self.delta[edge];
             if target == NONE {
-                self.behind[child as usize] = self.head[edge];
-                self.head[edge] = child;
-                self.weight[edge] += instance.weight[child as usize];
-                self.waits.push(edge as u32);
-                if let Some(label) = instance.label[child as usize] {
-                    self.labelled[edge][usize::from(label)] += 1;
-                    if self.labelled[edge][usize::from(!label)] > 0 {
-                        return false;
-                    }
+                if !self.wait(child, edge) {
+                    return false;
                 }
             } else {
                 self.arrivals.push((child, target));
             }
         }
         true
+    }
+
+    /// Lets a node wait at an undefined edge; `false` if it cannot share a state
+    /// with the others that wait there.
+    fn wait(&mut self, node: Node, edge: usize) -> bool {
+        let instance = self.instance;
+        self.behind[node as usize] = self.head[edge];
+        self.head[edge] = node;
+        self.weight[edge] += instance.weight[node as usize];
+        self.waits.push(edge as u32);
+        let mut compatible = true;
+        let mut count = |labelled: &mut [u32; 2], label: Option<bool>| {
+            if let Some(label) = label {
+                labelled[usize::from(label)] += 1;
+                compatible &= labelled[usize::from(!label)] == 0;
+            }
+        };
+        count(&mut self.labelled[edge], instance.label[node as usize]);
+        if self.glance > 0 {
+            for child in instance.children(node) {
+                let symbol = instance.symbol[child as usize] as usize;
+                let labelled = &mut self.beyond[edge * self.glance + symbol];
+                count(labelled, instance.label[child as usize]);
+            }
+        }
+        compatible
     }
 
     /// Sets a state's output and what it implies.
