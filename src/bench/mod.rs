@@ -1,1 +1,7 @@
-//! Scripted teaching runs, and the tables made of them.
+//! Scripted teaching runs and the tables made of them.
+
+mod clock;
+mod trial;
+
+pub use clock::process_cpu;
+pub use trial::{Asked, Report, TrialError, percentile, teach};

@@ -5,8 +5,10 @@
 
 mod convert;
 mod equivalent;
+mod files;
 mod identify;
 mod learn;
+mod output;
 #[cfg(feature = "server")]
 mod serve;
 
@@ -51,8 +53,8 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Some(Command::Learn(args)) => learn::run(args),
         Some(Command::Identify(args)) => identify::run(args),
-        Some(Command::Equivalent(args)) => equivalent::run(args),
-        Some(Command::Convert(args)) => convert::run(args),
+        Some(Command::Equivalent(args)) => equivalent::run(&args),
+        Some(Command::Convert(args)) => convert::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Serve(args)) => serve::run(args),
         #[cfg(feature = "server")]

@@ -59,6 +59,10 @@ pub struct Contradiction {
 /// Why facts cannot stand together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
+    /// A cycle of preferences of which at least one is strict: no preorder at
+    /// all agrees. It is found by [`crate::concept::Preorder`]; an identifier,
+    /// which reads `≺` as Eq. 5.4 does, never reports it.
+    Order,
     /// An accepted word below a rejected one (or a word with two labels): no
     /// language at all is consistent.
     MemRep,
