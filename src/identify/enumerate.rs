@@ -381,3 +381,6 @@ enum Heights {
     Exact(Vec<u128>),
     Rounded(Vec<f64>),
 }
+
+#[cfg(test)]
+mod tests;
