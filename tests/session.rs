@@ -37,7 +37,10 @@ impl Kept {
         assert_eq!(self.log.last(), Some(&event), "{text}");
     }
 
-    fn act(&mut self, decide: impl Fn(&Session) -> Result<Decision, Refusal>) -> Result<(), Refusal> {
+    fn act(
+        &mut self,
+        decide: impl Fn(&Session) -> Result<Decision, Refusal>,
+    ) -> Result<(), Refusal> {
         if let Decision::Append(event) = decide(&self.session)? {
             self.append(event);
             self.think();
@@ -138,7 +141,9 @@ fn a_done_session_goes_on_when_the_agreement_is_taken_back() {
 
 #[test]
 fn contradictory_answers_are_shown_and_mending_one_goes_on() {
-    let task = Task::from_json(&json!({"symbols": ["a"], "examples": [{"word": [], "label": true}]})).unwrap();
+    let task =
+        Task::from_json(&json!({"symbols": ["a"], "examples": [{"word": [], "label": true}]}))
+            .unwrap();
     let mut kept = Kept::begin(task, Setup::default());
     // Whatever is asked: a lie until there is a contradiction.
     let mut seen = 0;
@@ -164,7 +169,10 @@ fn contradictory_answers_are_shown_and_mending_one_goes_on() {
     assert!(!conflict.answers.is_empty());
     let liar = *conflict.answers.last().unwrap();
     let refused = kept.session.answer(liar + 1, &Reply::Accept).unwrap_err();
-    assert!(refused.to_string().contains("cannot all be true"), "{refused}");
+    assert!(
+        refused.to_string().contains("cannot all be true"),
+        "{refused}"
+    );
     kept.act(|session| session.retract(liar)).unwrap();
     assert!(kept.open().is_some(), "{:?}", kept.session.position());
 }
@@ -186,10 +194,7 @@ fn too_small_a_bound_is_a_conflict_that_a_larger_one_resolves() {
             Position::Conflict(conflict) => {
                 assert_eq!(conflict.bound, Some(3));
                 assert!(!enlarged);
-                assert_eq!(
-                    kept.session.enlarge(2),
-                    Err(Refusal::BadBound { now: 3 })
-                );
+                assert_eq!(kept.session.enlarge(2), Err(Refusal::BadBound { now: 3 }));
                 kept.act(|session| session.enlarge(6)).unwrap();
                 enlarged = true;
             }
@@ -211,12 +216,24 @@ fn refusals_say_what_to_do() {
     let (open, question) = kept.open().unwrap();
     let wrong = Reply::Correct;
     for (result, expected) in [
-        (session.answer(99, &Reply::Accept), "there is no question 99: question 1 is open now"),
-        (session.retract(99), "there is no question 99: question 1 is open now"),
+        (
+            session.answer(99, &Reply::Accept),
+            "there is no question 99: question 1 is open now",
+        ),
+        (
+            session.retract(99),
+            "there is no question 99: question 1 is open now",
+        ),
         (session.retract(1), "question 1 has no standing answer yet"),
         (session.undo(), "there is no answer to take back yet"),
-        (session.change(1, &Reply::Accept), "question 1 has no standing answer yet"),
-        (session.enlarge(1000), "give a bound larger than 24 and at most 100"),
+        (
+            session.change(1, &Reply::Accept),
+            "question 1 has no standing answer yet",
+        ),
+        (
+            session.enlarge(1000),
+            "give a bound larger than 24 and at most 100",
+        ),
     ] {
         assert_eq!(result.unwrap_err().to_string(), expected);
     }
@@ -224,7 +241,11 @@ fn refusals_say_what_to_do() {
     assert!(unfit.contains("does not fit question 1"), "{unfit}");
     let reply = truthfully(&mut teacher_of("tomita:5"), &question);
     kept.act(|session| session.answer(open, &reply)).unwrap();
-    let closed = kept.session.answer(open, &Reply::Skip).unwrap_err().to_string();
+    let closed = kept
+        .session
+        .answer(open, &Reply::Skip)
+        .unwrap_err()
+        .to_string();
     assert_eq!(closed, "question 1 is closed: question 2 is open now");
     // The same again is counted once, and leads where it led.
     assert_eq!(
@@ -262,7 +283,10 @@ fn logs_that_make_no_sense_are_refused_at_the_entry() {
     assert_eq!(refold(&twice).unwrap().0, 4);
     let mut skipped = text.clone();
     skipped[3]["number"] = 7.into();
-    assert_eq!(refold(&skipped), Some((3, "question 7 comes out of turn".to_owned())));
+    assert_eq!(
+        refold(&skipped),
+        Some((3, "question 7 comes out of turn".to_owned()))
+    );
 }
 
 /// One thing that a restless person does.
@@ -287,7 +311,9 @@ fn whim() -> impl Strategy<Value = Whim> {
 fn some_reply(question: &Question<Word, Dfa>, drawn: u8) -> Reply<Word> {
     use memrep::evidence::Comparison::{Equal, First, Incomparable, Second};
     match question {
-        Question::Membership { .. } => [Reply::Accept, Reply::Reject][usize::from(drawn) % 2].clone(),
+        Question::Membership { .. } => {
+            [Reply::Accept, Reply::Reject][usize::from(drawn) % 2].clone()
+        }
         Question::Comparison { .. } => {
             Reply::Compared([First, Second, Equal, Incomparable][usize::from(drawn) % 4])
         }
@@ -306,7 +332,11 @@ fn live(task: Task, whims: &[Whim]) -> Kept {
     let mut kept = Kept::begin(task, Setup::default());
     for whim in whims {
         let numbers: Vec<u32> = kept.session.standing().iter().map(|s| s.number).collect();
-        let pick = |drawn: u8| numbers.get(usize::from(drawn) % numbers.len().max(1)).copied();
+        let pick = |drawn: u8| {
+            numbers
+                .get(usize::from(drawn) % numbers.len().max(1))
+                .copied()
+        };
         let result = match whim {
             Whim::Answer(drawn) => match kept.open() {
                 Some((number, question)) => {
@@ -334,7 +364,10 @@ fn live(task: Task, whims: &[Whim]) -> Kept {
             },
         };
         // Only an unfit skip is refused: equivalence questions are not skipped.
-        assert!(matches!(result, Ok(()) | Err(Refusal::Unfit { .. })), "{whim:?}: {result:?}");
+        assert!(
+            matches!(result, Ok(()) | Err(Refusal::Unfit { .. })),
+            "{whim:?}: {result:?}"
+        );
     }
     kept
 }

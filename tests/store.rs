@@ -39,10 +39,19 @@ fn entries_are_there_after_reopening() {
 fn numbers_are_given_once_and_without_gaps() {
     let store = Sqlite::in_memory().unwrap();
     let session = id();
-    assert!(matches!(store.append(&session, 1, ""), Err(StoreError::Gap { seq: 1, .. })));
+    assert!(matches!(
+        store.append(&session, 1, ""),
+        Err(StoreError::Gap { seq: 1, .. })
+    ));
     store.append(&session, 0, "a").unwrap();
-    assert!(matches!(store.append(&session, 0, "b"), Err(StoreError::Taken { seq: 0, .. })));
-    assert!(matches!(store.append(&session, 2, "b"), Err(StoreError::Gap { seq: 2, .. })));
+    assert!(matches!(
+        store.append(&session, 0, "b"),
+        Err(StoreError::Taken { seq: 0, .. })
+    ));
+    assert!(matches!(
+        store.append(&session, 2, "b"),
+        Err(StoreError::Gap { seq: 2, .. })
+    ));
     assert_eq!(store.read(&session).unwrap().len(), 1);
 }
 
@@ -68,7 +77,10 @@ fn of_writers_that_saw_the_same_one_succeeds() {
         let won = results.iter().filter(|r| r.is_ok()).count();
         assert_eq!(won, 1, "{results:?}");
         for result in results {
-            assert!(matches!(result, Ok(()) | Err(StoreError::Taken { .. })), "{result:?}");
+            assert!(
+                matches!(result, Ok(()) | Err(StoreError::Taken { .. })),
+                "{result:?}"
+            );
         }
     }
     assert_eq!(stores[1].read(&session).unwrap().len(), 11);
@@ -87,7 +99,11 @@ fn other_files_are_refused_and_left_as_they_are() {
     let at = |name: &str| folder.path().join(name);
 
     let text = at("notes.txt");
-    std::fs::write(&text, "dear diary, this is certainly not a database\n".repeat(40)).unwrap();
+    std::fs::write(
+        &text,
+        "dear diary, this is certainly not a database\n".repeat(40),
+    )
+    .unwrap();
 
     let foreign = at("foreign.db");
     rusqlite::Connection::open(&foreign)
@@ -103,7 +119,10 @@ fn other_files_are_refused_and_left_as_they_are() {
         .unwrap();
 
     for (path, part) in [
-        (&text, "not an SQLite file; name another file with --database"),
+        (
+            &text,
+            "not an SQLite file; name another file with --database",
+        ),
         (&foreign, "a database of another program"),
         (&newer, "version 99, and this memrep reads version 1"),
     ] {
@@ -114,5 +133,8 @@ fn other_files_are_refused_and_left_as_they_are() {
         assert_eq!(before, std::fs::read(path).unwrap());
     }
     let message = refusal(&at("no/such/folder/a.db"));
-    assert!(message.contains("check that its folder exists"), "{message}");
+    assert!(
+        message.contains("check that its folder exists"),
+        "{message}"
+    );
 }

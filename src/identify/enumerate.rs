@@ -25,12 +25,11 @@ use crate::evidence::Budget;
 /// [`SPARSE`] leaves.
 const LISTING: u64 = 3_000;
 /// With fewer leaves, it goes on for so many more nodes.
-const SPARSE_LISTING: u64 = 20_000;
-/// A few hundred leaves in [`LISTING`] nodes: dives then find one in about 100
-/// nodes.
-const SPARSE: usize = 300;
+const SPARSE_LISTING: u64 = 12_000;
+/// With that many leaves in [`LISTING`] nodes, dives find one in about 200 nodes.
+const SPARSE: usize = 150;
 /// Nodes that the dives of one search may take together.
-const DIVES: u64 = 3_000;
+const DIVES: u64 = 4_000;
 /// Nodes that listing goes on for at a time where dives found too few.
 const FINISHING: u64 = 20_000;
 

@@ -19,13 +19,14 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
+use axum::http::Uri;
+use axum::http::header::CONTENT_TYPE;
 use axum::middleware::from_fn;
-use axum::response::Response;
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use tokio::net::TcpListener;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::csrf::{CsrfLayer, ProtectionError};
-use tower_http::limit::RequestBodyLimitLayer;
 use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
 use tower_http::timeout::RequestBodyDeadlineLayer;
 use tower_http::trace::TraceLayer;
@@ -64,22 +65,20 @@ impl AppState {
 pub fn app(state: AppState) -> Router {
     let api = api::routes()
         .layer(CatchPanicLayer::custom(|panic| {
-            axum::response::IntoResponse::into_response(ApiError(panicked(&panic)))
+            ApiError(panicked(&panic)).into_response()
         }))
-        .layer(DefaultBodyLimit::max(API_LIMIT))
-        .layer(RequestBodyLimitLayer::new(API_LIMIT));
+        .layer(DefaultBodyLimit::max(API_LIMIT));
     let pages = pages::routes()
         .route("/static/{name}", get(assets::get))
-        .fallback(async || PageError(WebError::NoPage))
+        .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))
         .method_not_allowed_fallback(async || PageError(WebError::NoMethod))
         .layer(CatchPanicLayer::custom(|panic| {
-            axum::response::IntoResponse::into_response(PageError(panicked(&panic)))
+            PageError(panicked(&panic)).into_response()
         }))
-        .layer(DefaultBodyLimit::max(FORM_LIMIT))
-        .layer(RequestBodyLimitLayer::new(FORM_LIMIT));
+        .layer(DefaultBodyLimit::max(FORM_LIMIT));
     let same_site = CsrfLayer::new().with_rejection_response(|error: ProtectionError| {
         tracing::info!(%error, "cross-site request refused");
-        axum::response::IntoResponse::into_response(ApiError(WebError::Foreign))
+        ApiError(WebError::Foreign).into_response()
     });
     Router::new()
         .nest("/api/v1", api)
