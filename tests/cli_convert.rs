@@ -93,6 +93,9 @@ fn automata_go_through_every_format_and_back() {
 
     check(&folder, &["convert", "even.json", "even.hoa"], 0, "");
     assert!(text(&folder, "even.hoa").starts_with("HOA: v1\n"));
+    check(&folder, &["convert", "even.json", "even.svg"], 0, "");
+    let svg = text(&folder, "even.svg");
+    assert!(svg.contains("<svg") && svg.contains("even"), "{svg}");
     let picture = ["convert", "even.json", "-", "--to", "dot-people"];
     let picture = memrep(&folder, &picture, "");
     assert!(picture.stdout.contains("rankdir"), "{picture:?}");
@@ -157,7 +160,7 @@ fn what_cannot_be_converted_is_said_and_nothing_written() {
     check_fails(
         &folder,
         &["convert", "even.json", "out.abb"],
-        "cannot write out.abb: an automaton cannot be written as a sample (abb): choose json, dot, dot-people or hoa",
+        "cannot write out.abb: an automaton cannot be written as a sample (abb): choose json, dot, dot-people, svg or hoa",
     );
     check_fails(
         &folder,
@@ -177,6 +180,21 @@ fn what_cannot_be_converted_is_said_and_nothing_written() {
     for name in ["out.abb", "out.dot", "out.json"] {
         assert!(!folder.path().join(name).exists(), "{name}");
     }
+}
+
+#[test]
+fn pictures_that_nobody_can_read_are_not_drawn() {
+    // Counts `a` up to 29, accepting at the end.
+    let rows: Vec<String> = (0..30).map(|q| format!("[{}]", (q + 1).min(29))).collect();
+    let chain = format!(
+        r#"{{"format":"memrep-dfa","version":1,"alphabet":["a"],"states":30,"start":0,"accepting":[29],"delta":[{}]}}"#,
+        rows.join(",")
+    );
+    let folder = folder(&[("chain.json", &chain)]);
+    let outcome = memrep(&folder, &["convert", "chain.json", "chain.svg"], "");
+    assert_eq!(outcome.status, Some(2), "{outcome:?}");
+    assert!(outcome.stderr.contains("choose dot-people"), "{outcome:?}");
+    assert!(!folder.path().join("chain.svg").exists());
 }
 
 #[test]

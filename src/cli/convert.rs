@@ -12,6 +12,7 @@ use super::files::{self, Content, Format};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   memrep convert task.json task.dot                     for AALpy or AutomataLib
+  memrep convert task.json task.svg
   memrep convert task.json - --to dot-people | dot -Tpng -o task.png
   memrep convert learned.dot task.json
   memrep convert words.abb words.jsonl

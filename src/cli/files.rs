@@ -11,10 +11,12 @@ use automata::format::json::Document;
 use automata::format::{abbadingo, dot, dot_people, hoa, json, jsonl};
 use clap::ValueEnum;
 
+use crate::draw::{self, Captions};
+
 /// The formats of files, by the names that `--from` and `--to` take.
 ///
-/// A new one, a picture say, is a name here and in [`Format::of_extension`], and
-/// an arm wherever the compiler then asks for one.
+/// A new one is a name here and in [`Format::of_extension`], and an arm wherever
+/// the compiler then asks for one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
     /// Automaton: memrep's own file (.json).
@@ -23,6 +25,8 @@ pub(crate) enum Format {
     Dot,
     /// Automaton: DOT for a picture; write only.
     DotPeople,
+    /// Automaton: a picture (.svg); write only.
+    Svg,
     /// Automaton: Hanoi omega-automata, finite semantics (.hoa); write only.
     Hoa,
     /// Sample: Abbadingo, labelled words (.abb).
@@ -52,6 +56,7 @@ impl Format {
         Some(match extension.to_ascii_lowercase().as_str() {
             "json" => Self::Json,
             "dot" | "gv" => Self::Dot,
+            "svg" => Self::Svg,
             "hoa" => Self::Hoa,
             "abb" => Self::Abb,
             "jsonl" => Self::Jsonl,
@@ -82,7 +87,7 @@ pub(crate) fn read(path: &Path, asked: Option<Format>) -> anyhow::Result<Content
         Format::Dot => |text| Ok(Content::Automaton(dot::read(text)?.into())),
         Format::Abb => |text| Ok(Content::Sample(abbadingo::read(text)?)),
         Format::Jsonl => |text| Ok(Content::Sample(jsonl::read(text)?)),
-        Format::DotPeople | Format::Hoa => bail!(
+        Format::DotPeople | Format::Svg | Format::Hoa => bail!(
             "{}: the format {format} is only written: read json, dot, abb or jsonl",
             path.display()
         ),
@@ -99,6 +104,40 @@ pub(crate) fn read_automaton(path: &Path, asked: Option<Format>) -> anyhow::Resu
             path.display()
         ),
     }
+}
+
+/// An item's line in its file: the number, from 1, and the text.
+pub(crate) struct ItemLine {
+    pub(crate) number: usize,
+    pub(crate) text: String,
+}
+
+/// Reads a sample, with the line of each of its items.
+pub(crate) fn read_sample(
+    path: &Path,
+    asked: Option<Format>,
+) -> anyhow::Result<(Sample, Vec<ItemLine>)> {
+    let parse = match Format::choose(asked, path, "--from")? {
+        Format::Abb => abbadingo::read,
+        Format::Jsonl => jsonl::read,
+        other => bail!(
+            "{}: expected a sample (abb or jsonl), not the format {other}, which holds an automaton",
+            path.display()
+        ),
+    };
+    let text = text(path)?;
+    let sample = parse(&text).with_context(|| path.display().to_string())?;
+    // In both formats an item is a line that is not empty; what comes before
+    // the items, the sizes or the alphabet, is one as well.
+    let filled = (text.lines().enumerate()).filter(|(_, line)| !line.trim().is_empty());
+    let mut lines: Vec<ItemLine> = filled
+        .map(|(index, line)| ItemLine {
+            number: index + 1,
+            text: line.trim().to_owned(),
+        })
+        .collect();
+    lines.drain(..lines.len() - sample.items().len());
+    Ok((sample, lines))
 }
 
 /// The text of a file.
@@ -128,20 +167,33 @@ pub(crate) fn render(content: &Content, format: Format) -> anyhow::Result<String
         (Content::Automaton(document), Format::Json) => json::write(document),
         (Content::Automaton(document), Format::Dot) => dot::write(&document.dfa)?,
         (Content::Automaton(document), Format::DotPeople) => dot_people::write(&document.dfa),
+        (Content::Automaton(document), Format::Svg) => picture(document)?,
         (Content::Automaton(document), Format::Hoa) => hoa::write(&document.dfa)?,
         (Content::Sample(sample), Format::Abb) => abbadingo::write(sample)?,
         (Content::Sample(sample), Format::Jsonl) => jsonl::write(sample),
         (Content::Automaton(_), Format::Abb | Format::Jsonl) => {
             bail!(
-                "an automaton cannot be written as a sample ({format}): choose json, dot, dot-people or hoa"
+                "an automaton cannot be written as a sample ({format}): choose json, dot, dot-people, svg or hoa"
             )
         }
-        (Content::Sample(_), Format::Json | Format::Dot | Format::DotPeople | Format::Hoa) => {
+        (
+            Content::Sample(_),
+            Format::Json | Format::Dot | Format::DotPeople | Format::Svg | Format::Hoa,
+        ) => {
             bail!(
                 "a sample cannot be written as an automaton ({format}): choose abb or jsonl, or find an automaton by `memrep identify`"
             )
         }
     })
+}
+
+/// An automaton as a picture under its name.
+fn picture(document: &Document) -> anyhow::Result<String> {
+    let captions = Captions {
+        title: document.name.clone(),
+        ..Captions::default()
+    };
+    draw::document(&document.dfa, &captions).context("choose dot-people and draw it with Graphviz")
 }
 
 /// Writes a file, or to the standard output if the path is `-`.
