@@ -389,6 +389,3 @@ enum Heights {
     Exact(Vec<u128>),
     Rounded(Vec<f64>),
 }
-
-#[cfg(test)]
-mod tests;
