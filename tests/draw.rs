@@ -180,7 +180,7 @@ fn a_crowd_is_not_drawn() {
 #[test]
 fn random_automata_are_drawn_twice_the_same() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
-    for _ in 0..150 {
+    for _ in 0..60 {
         let states = rng.random_range(1..=draw::MAX_STATES);
         let symbols = rng.random_range(1..=5);
         let names: Vec<String> = (0..symbols).map(|s| format!("s{s}")).collect();

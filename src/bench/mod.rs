@@ -1,1 +1,10 @@
-//! Scripted teaching runs, and the tables made of them.
+//! Scripted teaching runs and the tables made of them.
+
+mod clock;
+mod published;
+pub mod thesis;
+pub mod thesis_page;
+mod trial;
+
+pub use clock::process_cpu;
+pub use trial::{Asked, Report, TrialError, percentile, teach};

@@ -3,16 +3,23 @@
 //! A class knows which of its concepts are consistent, smallest first, and on
 //! which atoms two of them differ. It must not know bandits, costs or people.
 
+mod dfa;
+mod finite;
+mod preorder;
+
 use std::fmt::Debug;
 use std::hash::Hash;
 
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure};
+pub use dfa::DfaClass;
+pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
+pub use preorder::Preorder;
 
 /// Different concepts of the smallest consistent size.
 #[derive(Clone, Debug)]
 pub struct Sample<C> {
-    /// At least one; no two contain the same atoms.
+    /// At least one; no two contain the same atoms; simplest first.
     pub concepts: Vec<C>,
     /// Whether there are no others of this size.
     pub complete: bool,
@@ -55,4 +62,7 @@ pub trait ConceptClass {
         outside: &Self::Concept,
         count: usize,
     ) -> Vec<Self::Atom>;
+
+    /// The atoms of the universe, simplest first; endless for infinite ones.
+    fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
 }

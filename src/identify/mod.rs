@@ -2,13 +2,24 @@
 //!
 //! Knows words and facts; it must not know who asks, or why.
 
+mod completion;
+mod contradiction;
 mod engine;
+mod enumerate;
+mod growing;
+mod identifier;
+mod instance;
+mod labels;
+mod merged;
+mod partial;
 mod problem;
+mod sat;
 mod tree;
 
-use automata::{Alphabet, Dfa, Word};
+use automata::Dfa;
 
-use crate::evidence::{AnswerId, Budget, Fact};
+use crate::evidence::AnswerId;
+pub use identifier::Identifier;
 
 /// Which engine answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,17 +47,24 @@ pub struct Settings {
 /// Facts that cannot stand together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contradiction {
-    /// A minimal set of answers: without any one of them the rest can stand.
+    /// A minimal set of answers: without any one of them its rest can stand.
     /// In ascending order. Empty if the facts known at the start (those without
     /// an answer) are contradictory by themselves.
     pub answers: Vec<AnswerId>,
     /// Why they cannot stand.
     pub cause: Cause,
+    /// Whether it is proved that no answer can be left out. If not, the budget
+    /// ended on the way; the answers cannot all stand in any case.
+    pub minimal: bool,
 }
 
 /// Why facts cannot stand together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
+    /// A cycle of preferences of which at least one is strict: no preorder at
+    /// all agrees. It is found by [`crate::concept::Preorder`]; an identifier,
+    /// which reads `≺` as Eq. 5.4 does, never reports it.
+    Order,
     /// An accepted word below a rejected one (or a word with two labels): no
     /// language at all is consistent.
     MemRep,
@@ -72,52 +90,9 @@ pub enum Failure {
 /// Different automata of the smallest consistent size.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// Minimal and canonically numbered; each of another language; at least one.
+    /// Minimal and numbered breadth first; each of another language; at least
+    /// one. Simplest first: most self-loops, then by the table.
     pub automata: Vec<Dfa>,
     /// Whether there are no others of this size.
     pub complete: bool,
-}
-
-/// An incremental search for the smallest consistent automata: facts come and
-/// go, and what was learned from the others is kept.
-pub struct Identifier {}
-
-impl Identifier {
-    /// A search over all DFAs with this alphabet.
-    pub fn new(alphabet: Alphabet, settings: Settings) -> Self {
-        let _ = (alphabet, settings);
-        unimplemented!()
-    }
-
-    /// Adds a fact. `None` for one that is known from the start and can never
-    /// be retracted; several facts may carry the same answer.
-    pub fn add(&mut self, answer: Option<AnswerId>, fact: Fact<Word>) {
-        let _ = (answer, fact);
-        unimplemented!()
-    }
-
-    /// Takes back all facts of an answer.
-    pub fn retract(&mut self, answer: AnswerId) {
-        let _ = answer;
-        unimplemented!()
-    }
-
-    /// Up to `count` different automata of the smallest consistent size.
-    ///
-    /// If there are more, it is a random sample, and a function of the standing
-    /// facts and `seed` alone: not of the order in which facts came, of what
-    /// was retracted, or of what was asked before.
-    ///
-    /// # Errors
-    ///
-    /// If no automaton within the bound is consistent, or the budget ends.
-    pub fn smallest(
-        &mut self,
-        count: usize,
-        seed: u64,
-        budget: &mut Budget,
-    ) -> Result<Sample, Failure> {
-        let _ = (count, seed, budget);
-        unimplemented!()
-    }
 }

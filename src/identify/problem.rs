@@ -55,7 +55,24 @@ impl Problem {
     }
 
     /// Adds a fact; none if it says nothing about the language.
+    ///
+    /// # Panics
+    ///
+    /// If a word has a symbol that the alphabet does not have.
     pub(crate) fn add(&mut self, answer: Option<AnswerId>, fact: &Fact<Word>) -> Option<FactId> {
+        let (one, other) = match fact {
+            Fact::Label { atom, .. } => (atom, atom),
+            Fact::Below { worse, better } => (worse, better),
+            Fact::Equal { first, second } | Fact::Incomparable { first, second } => (first, second),
+        };
+        for symbol in one.iter().chain(other.iter()) {
+            assert!(
+                symbol.index() < self.alphabet.len(),
+                "a word has symbol number {}, which the alphabet {} does not have",
+                symbol.index(),
+                self.alphabet,
+            );
+        }
         let constraint = match fact {
             Fact::Label { atom, accepted } => Constraint::Label(self.tree.insert(atom), *accepted),
             Fact::Below { worse, better } => {

@@ -5,8 +5,19 @@
 //! next depends on its [`Config`] and on the answers that stand, and on nothing
 //! else. It must not know async, clocks, files, SQL or HTML.
 
+mod choose;
+mod exp4;
+mod experts;
+mod known;
+mod selection;
+
+use std::hash::Hash;
+
 use serde::{Deserialize, Serialize};
 
+use self::experts::Bandit;
+pub use self::experts::{Losses, Round};
+use self::known::Known;
 use crate::concept::{ConceptClass, Contradiction};
 use crate::evidence::{AnswerId, Comparison, Fact};
 
@@ -93,12 +104,10 @@ pub enum ReplyError {
     /// The hypothesis already gives the atom this label.
     #[error("this is no counterexample: the hypothesis already gives it that label")]
     NoCounterexample,
+    /// The number belongs to an answer that stands.
+    #[error("answer {0} was given already: retract it before giving another")]
+    UsedNumber(u32),
 }
-
-/// What the bandit must remember of the round in which a question was chosen
-/// (Algorithm 5), so that the answer alone completes the round.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Round {}
 
 /// The learner's next move.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,17 +142,80 @@ pub struct Counts {
     pub equivalence: u32,
 }
 
+/// An answered question.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry<A, C> {
+    /// Its number.
+    pub answer: AnswerId,
+    /// What was asked.
+    pub question: Question<A, C>,
+    /// The bandit's round, as [`Step::Ask`] gave it.
+    pub round: Option<Round>,
+    /// What the teacher replied.
+    pub reply: Reply<A>,
+}
+
+impl<A: Clone, C> Entry<A, C> {
+    /// What the entry says about the concept or the order; none for an agreed
+    /// hypothesis and for a skipped question.
+    pub fn fact(&self) -> Option<Fact<A>> {
+        let label = |atom: &A, accepted| Fact::Label {
+            atom: atom.clone(),
+            accepted,
+        };
+        match (&self.question, &self.reply) {
+            (Question::Membership { atom }, Reply::Accept) => Some(label(atom, true)),
+            (Question::Membership { atom }, Reply::Reject) => Some(label(atom, false)),
+            (Question::Comparison { first, second }, Reply::Compared(answer)) => {
+                Some(Fact::compared(first.clone(), second.clone(), *answer))
+            }
+            (
+                Question::Equivalence { .. },
+                Reply::Counterexample {
+                    atom,
+                    label: accepted,
+                },
+            ) => Some(label(atom, *accepted)),
+            _ => None,
+        }
+    }
+}
+
 /// The learner: evidence in, question out.
 pub struct Learner<C: ConceptClass> {
     class: C,
     config: Config,
+    /// What is known from the start.
+    given: Vec<Fact<C::Atom>>,
+    /// The answers that stand, in the order in which they were recorded.
+    entries: Vec<Entry<C::Atom, C::Concept>>,
+    /// Folded from `given` and `entries`.
+    evidence: Known<C::Atom>,
+    /// Folded from `entries`.
+    bandit: Bandit,
+    /// The move that follows from all this, once it was asked for.
+    next: Option<Step<C::Atom, C::Concept>>,
+    simplest: Option<C::Concept>,
 }
 
 impl<C: ConceptClass> Learner<C> {
     /// A learner that knows `known` from the start.
-    pub fn new(class: C, config: Config, known: Vec<Fact<C::Atom>>) -> Self {
-        let _ = known;
-        Self { class, config }
+    pub fn new(mut class: C, config: Config, known: Vec<Fact<C::Atom>>) -> Self {
+        for fact in &known {
+            class.add(None, fact.clone());
+        }
+        let mut learner = Self {
+            class,
+            config,
+            given: known,
+            entries: Vec::new(),
+            evidence: Known::default(),
+            bandit: Bandit::default(),
+            next: None,
+            simplest: None,
+        };
+        learner.fold();
+        learner
     }
 
     /// Folds in an answered question. `answer` is a number not used before.
@@ -158,25 +230,165 @@ impl<C: ConceptClass> Learner<C> {
         round: Option<Round>,
         reply: Reply<C::Atom>,
     ) -> Result<(), ReplyError> {
-        let _ = (answer, question, round, reply, &self.class, &self.config);
-        unimplemented!()
+        self.check(answer, &question, &reply)?;
+        let entry = Entry {
+            answer,
+            question,
+            round,
+            reply,
+        };
+        if let Some(fact) = entry.fact() {
+            self.class.add(Some(answer), fact);
+        }
+        absorb(&mut self.evidence, &mut self.bandit, &entry);
+        self.entries.push(entry);
+        self.next = None;
+        self.simplest = None;
+        Ok(())
     }
 
     /// Takes an answer back, as if its question had never been asked; `false`
     /// if no such answer stands.
     pub fn retract(&mut self, answer: AnswerId) -> bool {
-        let _ = answer;
-        unimplemented!()
+        let before = self.entries.len();
+        self.entries.retain(|entry| entry.answer != answer);
+        if self.entries.len() == before {
+            return false;
+        }
+        self.class.retract(answer);
+        self.fold();
+        true
     }
 
     /// The next move: a function of the configuration and the answers that
     /// stand (in the order in which they were recorded).
     pub fn next(&mut self) -> Step<C::Atom, C::Concept> {
-        unimplemented!()
+        if let Some(step) = &self.next {
+            return step.clone();
+        }
+        let (step, simplest) = self.choose();
+        self.next = Some(step.clone());
+        self.simplest = simplest;
+        step
     }
 
-    /// The standing answers, by kind.
+    /// The standing answers, by kind. Skipped questions are not answered.
     pub fn counts(&self) -> Counts {
-        unimplemented!()
+        let mut counts = Counts::default();
+        for entry in &self.entries {
+            match (&entry.question, &entry.reply) {
+                (_, Reply::Skip) => {}
+                (Question::Membership { .. }, _) => counts.membership += 1,
+                (Question::Comparison { .. }, _) => counts.comparison += 1,
+                (Question::Equivalence { .. }, _) => counts.equivalence += 1,
+            }
+        }
+        counts
+    }
+
+    /// The answers that stand, in the order in which they were recorded.
+    pub fn entries(&self) -> &[Entry<C::Atom, C::Concept>] {
+        &self.entries
+    }
+
+    /// The simplest concept of the smallest consistent size that the last
+    /// [`Self::next`] met; none before it, after a change, and where the budget
+    /// ended before any was found.
+    pub fn hypothesis(&self) -> Option<&C::Concept> {
+        self.simplest.as_ref()
+    }
+
+    /// What can be learned.
+    pub fn class(&self) -> &C {
+        &self.class
+    }
+
+    /// What the learner was told at its start.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Whether the reply may be given to the question.
+    fn check(
+        &self,
+        answer: AnswerId,
+        question: &Question<C::Atom, C::Concept>,
+        reply: &Reply<C::Atom>,
+    ) -> Result<(), ReplyError> {
+        if self.entries.iter().any(|entry| entry.answer == answer) {
+            return Err(ReplyError::UsedNumber(answer.0));
+        }
+        let (question, expected) = match (question, reply) {
+            (Question::Membership { .. }, Reply::Accept | Reply::Reject | Reply::Skip)
+            | (Question::Comparison { .. }, Reply::Compared(_) | Reply::Skip)
+            | (Question::Equivalence { .. }, Reply::Correct) => return Ok(()),
+            (Question::Equivalence { hypothesis }, Reply::Counterexample { atom, label }) => {
+                return if self.class.contains(hypothesis, atom) == *label {
+                    Err(ReplyError::NoCounterexample)
+                } else {
+                    Ok(())
+                };
+            }
+            (Question::Membership { .. }, _) => ("membership", "accept, reject or skip"),
+            (Question::Comparison { .. }, _) => {
+                ("comparison", "first, second, equal, incomparable or skip")
+            }
+            (Question::Equivalence { .. }, _) => ("equivalence", "correct or a counterexample"),
+        };
+        Err(ReplyError::WrongKind { question, expected })
+    }
+
+    /// Folds all entries anew.
+    fn fold(&mut self) {
+        self.evidence = Known::default();
+        self.bandit = Bandit::default();
+        for fact in &self.given {
+            self.evidence.add(None, fact);
+        }
+        for entry in &self.entries {
+            absorb(&mut self.evidence, &mut self.bandit, entry);
+        }
+        self.next = None;
+        self.simplest = None;
+    }
+
+    /// The concept that the teacher agreed with last, unless later answers
+    /// speak against it.
+    fn agreed(&self) -> Option<C::Concept> {
+        let hypothesis =
+            self.entries
+                .iter()
+                .rev()
+                .find_map(|entry| match (&entry.question, &entry.reply) {
+                    (Question::Equivalence { hypothesis }, Reply::Correct) => Some(hypothesis),
+                    _ => None,
+                })?;
+        let answers = self.entries.iter().filter_map(Entry::fact);
+        let mut facts = self.given.iter().cloned().chain(answers);
+        let stands = facts.all(|fact| fact.holds(|atom| self.class.contains(hypothesis, atom)));
+        stands.then(|| hypothesis.clone())
+    }
+}
+
+/// Folds one entry into what is known and into the bandit.
+fn absorb<A: Clone + Ord + Hash, C>(
+    evidence: &mut Known<A>,
+    bandit: &mut Bandit,
+    entry: &Entry<A, C>,
+) {
+    if let Some(fact) = entry.fact() {
+        evidence.add(Some(entry.answer), &fact);
+    }
+    if entry.reply == Reply::Skip {
+        match &entry.question {
+            Question::Membership { atom } => evidence.skip(atom.clone()),
+            Question::Comparison { first, second } => {
+                evidence.skip_pair(first.clone(), second.clone());
+            }
+            Question::Equivalence { .. } => {}
+        }
+    }
+    if let Some(round) = &entry.round {
+        bandit.learn(round, &entry.reply);
     }
 }

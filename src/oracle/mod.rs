@@ -1,1 +1,34 @@
-//! Scripted teachers and the targets they teach. Must not know learners.
+//! Who can answer without a person: scripted teachers and their targets.
+//!
+//! A teacher knows its target and a preference order over atoms. It must not
+//! know learners.
+
+mod counterexample;
+mod order;
+mod scripted;
+mod target;
+
+pub use counterexample::Counterexamples;
+pub use order::{Order, PreferenceOrder};
+pub use scripted::{ScriptedTeacher, TeacherSettings};
+pub use target::{Target, TargetError};
+
+use crate::evidence::Comparison;
+
+/// Answers the three kinds of questions.
+pub trait Teacher {
+    /// One element of the universe.
+    type Atom;
+    /// One concept.
+    type Concept;
+
+    /// Whether the atom is acceptable.
+    fn membership(&mut self, atom: &Self::Atom) -> bool;
+
+    /// Which of the two is better.
+    fn comparison(&mut self, first: &Self::Atom, second: &Self::Atom) -> Comparison;
+
+    /// An atom about which the hypothesis is wrong, with its true label; none if
+    /// it is right about all.
+    fn counterexample(&mut self, hypothesis: &Self::Concept) -> Option<(Self::Atom, bool)>;
+}

@@ -45,7 +45,7 @@ pub enum DfaError {
     #[error("the automaton has no state: give at least one")]
     NoStates,
     /// The start state is not a row of the table.
-    #[error("the start state {start} does not exist: there are {states} states, numbered from 0")]
+    #[error("the start state {start} does not exist: states are numbered from 0 to {last}", last = states - 1)]
     BadStart {
         /// The start state as given.
         start: usize,
@@ -53,7 +53,7 @@ pub enum DfaError {
         states: usize,
     },
     /// The table does not have one row for every state.
-    #[error("the table has {rows} rows for {states} states: give one row a state")]
+    #[error("the table must have one row for each of {states} states, and has {rows}")]
     Rows {
         /// The number of rows.
         rows: usize,
@@ -62,7 +62,7 @@ pub enum DfaError {
     },
     /// A row does not have one entry for every symbol.
     #[error(
-        "row {state} has {entries} entries for {symbols} symbols: give one next state a symbol"
+        "row {state} must have one next state for each of {symbols} symbols, and has {entries}"
     )]
     Columns {
         /// The row, from 0.
@@ -74,7 +74,7 @@ pub enum DfaError {
     },
     /// An entry names a state that does not exist.
     #[error(
-        "row {state}, symbol {symbol}: state {target} does not exist, there are {states} states, numbered from 0"
+        "row {state}, symbol {symbol}: state {target} does not exist, states are numbered from 0 to {last}", last = states - 1
     )]
     BadTarget {
         /// The row, from 0.
@@ -144,6 +144,25 @@ impl Dfa {
         })
     }
 
+    /// The automaton with a table that the operations of this crate have made,
+    /// row-major.
+    pub(crate) fn from_table(
+        alphabet: Alphabet,
+        start: StateId,
+        accepting: Vec<bool>,
+        delta: Vec<StateId>,
+    ) -> Self {
+        debug_assert!(start.index() < accepting.len());
+        debug_assert_eq!(delta.len(), accepting.len() * alphabet.len());
+        debug_assert!(delta.iter().all(|q| q.index() < accepting.len()));
+        Self {
+            alphabet,
+            start,
+            accepting,
+            delta,
+        }
+    }
+
     /// The alphabet over which this automaton reads.
     pub fn alphabet(&self) -> &Alphabet {
         &self.alphabet
@@ -171,6 +190,8 @@ impl Dfa {
 
     /// The state after reading `symbol` in `state`.
     pub fn next(&self, state: StateId, symbol: Symbol) -> StateId {
+        // A foreign symbol would read another state's row.
+        debug_assert!(symbol.index() < self.alphabet.len());
         self.delta[state.index() * self.alphabet.len() + symbol.index()]
     }
 

@@ -1,0 +1,222 @@
+//! Reads JSONL samples line by line.
+
+use std::collections::HashSet;
+
+use serde_json::Value;
+
+use super::{Label, Line};
+use crate::format::ReadError;
+use crate::format::json::{alphabet_error, kind};
+use crate::sample::{Item, Sample};
+use crate::{Alphabet, Word};
+
+/// What to do about a line that is JSON but no item.
+const HINT: &str = r#"; a line is {"word":["a"],"label":true}, {"worse":["a"],"better":["b"]} or {"equal":[["a"],["b"]]}"#;
+
+/// Reads a sample. Its alphabet is the one that the first line names, or else
+/// has the symbols of all words in the order of their first appearance.
+///
+/// Empty lines are passed over.
+///
+/// # Errors
+///
+/// With the line, and the column or the path of the field; or if there is no
+/// symbol at all.
+pub fn read(text: &str) -> Result<Sample, ReadError> {
+    let file = File::parse(text)?;
+    let alphabet = match &file.declared {
+        Some((_, alphabet)) => alphabet.clone(),
+        None => file.shown_alphabet()?,
+    };
+    file.sample(alphabet)
+}
+
+/// Reads a sample over a known alphabet.
+///
+/// # Errors
+///
+/// As [`read`], or if a word has another symbol, or the first line names
+/// another alphabet.
+pub fn read_over(text: &str, alphabet: &Alphabet) -> Result<Sample, ReadError> {
+    let file = File::parse(text)?;
+    match &file.declared {
+        Some((number, declared)) if declared != alphabet => {
+            let message = format!("expected the alphabet {alphabet}, found {declared}");
+            Err(ReadError::field("alphabet", message).on_line(*number))
+        }
+        _ => file.sample(alphabet.clone()),
+    }
+}
+
+/// What a line says.
+enum Content {
+    Alphabet(Vec<String>),
+    Item(Named),
+}
+
+/// An item whose symbols are still names.
+enum Named {
+    Label(Vec<String>, Label),
+    Below(Vec<String>, Vec<String>),
+    Equal(Vec<String>, Vec<String>),
+}
+
+impl Content {
+    /// The form that a line has.
+    fn of(line: Line) -> Result<Self, ReadError> {
+        let preference = (line.worse, line.better, line.equal);
+        Ok(match (line.alphabet, line.word, line.label, preference) {
+            (Some(names), None, None, (None, None, None)) => Self::Alphabet(names),
+            (None, Some(word), Some(label), (None, None, None)) => {
+                Self::Item(Named::Label(word, label))
+            }
+            (None, None, None, (Some(worse), Some(better), None)) => {
+                Self::Item(Named::Below(worse, better))
+            }
+            (None, None, None, (None, None, Some(words))) => {
+                let [first, second] = <[_; 2]>::try_from(words).map_err(|words| {
+                    let message = format!("expected two words, found {}", words.len());
+                    ReadError::field("equal", message)
+                })?;
+                Self::Item(Named::Equal(first, second))
+            }
+            _ => {
+                let message = format!("these keys do not go together{HINT}");
+                return Err(ReadError::at(1, 1, message));
+            }
+        })
+    }
+}
+
+impl Named {
+    /// The words with their places in the line.
+    fn words(&self) -> Vec<(&'static str, &[String])> {
+        match self {
+            Self::Label(word, _) => vec![("word", word)],
+            Self::Below(worse, better) => vec![("worse", worse), ("better", better)],
+            Self::Equal(first, second) => vec![("equal[0]", first), ("equal[1]", second)],
+        }
+    }
+
+    /// The item over its alphabet.
+    fn item(&self, alphabet: &Alphabet) -> Result<Item, ReadError> {
+        let read = |field, names| word(alphabet, field, names);
+        Ok(match self {
+            Self::Label(names, Label(Some(accepted))) => Item::Label {
+                word: read("word", names)?,
+                accepted: *accepted,
+            },
+            Self::Label(names, Label(None)) => Item::Unknown {
+                word: read("word", names)?,
+            },
+            Self::Below(worse, better) => Item::Below {
+                worse: read("worse", worse)?,
+                better: read("better", better)?,
+            },
+            Self::Equal(first, second) => Item::Equal {
+                first: read("equal[0]", first)?,
+                second: read("equal[1]", second)?,
+            },
+        })
+    }
+}
+
+/// The word of these names; the error has the place of the first that is no
+/// symbol.
+fn word(alphabet: &Alphabet, field: &str, names: &[String]) -> Result<Word, ReadError> {
+    let symbols = names.iter().enumerate().map(|(place, name)| {
+        alphabet.symbol(name).ok_or_else(|| {
+            let message = format!("expected a symbol of the alphabet {alphabet}, found \"{name}\"");
+            ReadError::field(format!("{field}[{place}]"), message)
+        })
+    });
+    symbols.collect()
+}
+
+/// A file before its alphabet is known.
+struct File {
+    /// The alphabet that the first line names, and that line's number.
+    declared: Option<(usize, Alphabet)>,
+    /// The items, each with the number of its line.
+    items: Vec<(usize, Named)>,
+}
+
+impl File {
+    fn parse(text: &str) -> Result<Self, ReadError> {
+        let mut file = Self {
+            declared: None,
+            items: Vec::new(),
+        };
+        for (index, line) in text.lines().enumerate() {
+            let number = index + 1;
+            if !line.trim().is_empty() {
+                file.line(number, line)
+                    .map_err(|error| error.on_line(number))?;
+            }
+        }
+        Ok(file)
+    }
+
+    fn line(&mut self, number: usize, text: &str) -> Result<(), ReadError> {
+        let json = |error| ReadError::json(&error, HINT);
+        // An array would pass for an object with its keys in order.
+        let value: Value = serde_json::from_str(text).map_err(json)?;
+        if !value.is_object() {
+            let message = format!("expected an object, found {}{HINT}", kind(&value));
+            return Err(ReadError::at(1, 1, message));
+        }
+        match Content::of(serde_json::from_str(text).map_err(json)?)? {
+            Content::Item(item) => self.items.push((number, item)),
+            Content::Alphabet(names) => {
+                if self.declared.is_some() || !self.items.is_empty() {
+                    let message = "the alphabet can only be named once, before all words: move it to the first line";
+                    return Err(ReadError::field("alphabet", message));
+                }
+                let alphabet = Alphabet::new(names).map_err(|e| alphabet_error(&e))?;
+                self.declared = Some((number, alphabet));
+            }
+        }
+        Ok(())
+    }
+
+    /// The symbols in the order in which they appear.
+    fn shown_alphabet(&self) -> Result<Alphabet, ReadError> {
+        let mut names = Vec::new();
+        let mut seen = HashSet::new();
+        for (number, item) in &self.items {
+            for (field, word) in item.words() {
+                for (place, name) in word.iter().enumerate() {
+                    if !seen.insert(name.as_str()) {
+                        continue;
+                    }
+                    // One by one, so that the error has the place of the bad one.
+                    if Alphabet::new([name]).is_err() {
+                        let message = format!(
+                            "expected a symbol, found \"{name}\": use letters, digits and `_` only"
+                        );
+                        let error = ReadError::field(format!("{field}[{place}]"), message);
+                        return Err(error.on_line(*number));
+                    }
+                    names.push(name.as_str());
+                }
+            }
+        }
+        if names.is_empty() {
+            let message = r#"there is no symbol in this file, so its alphabet is not known: name it in the first line, {"alphabet":["a","b"]}"#;
+            return Err(ReadError::at(1, 1, message));
+        }
+        Alphabet::new(names).map_err(|error| ReadError::at(1, 1, error.to_string()))
+    }
+
+    /// The items over their alphabet.
+    fn sample(&self, alphabet: Alphabet) -> Result<Sample, ReadError> {
+        let mut sample = Sample::new(alphabet);
+        for (number, item) in &self.items {
+            let item = item
+                .item(sample.alphabet())
+                .map_err(|error| error.on_line(*number))?;
+            sample.push(item);
+        }
+        Ok(sample)
+    }
+}

@@ -1,0 +1,195 @@
+//! One scripted run: a learner asks a teacher until it has learned the concept.
+
+use std::time::Duration;
+
+use crate::concept::ConceptClass;
+use crate::evidence::AnswerId;
+use crate::learner::{Counts, Learner, Question, Reply, ReplyError, Step};
+use crate::oracle::Teacher;
+
+/// A question with the reply it got, as soon as it is there.
+#[derive(Debug)]
+pub struct Asked<'a, A, C> {
+    /// Its number, from 1.
+    pub number: u32,
+    /// What was asked.
+    pub question: &'a Question<A, C>,
+    /// What the teacher replied.
+    pub reply: &'a Reply<A>,
+}
+
+/// What came of a run.
+#[derive(Clone, Debug)]
+pub struct Report<C> {
+    /// The concept the teacher agreed with; none if the questions ran out.
+    pub learned: Option<C>,
+    /// All questions asked, also those whose answers were dropped later.
+    pub counts: Counts,
+    /// The cost of membership queries and comparisons (Eq. 5.2).
+    pub cost: f64,
+    /// The number of answers that were dropped because they could not stand
+    /// with others.
+    pub dropped: u32,
+    /// The number of questions for which the budget ended.
+    pub hurried: u32,
+    /// The CPU time that choosing each question took, in the order asked; what
+    /// conflicts took is part of the next question's.
+    pub question_times: Vec<Duration>,
+    /// The CPU time of the whole run.
+    pub cpu: Duration,
+}
+
+/// Why a run cannot go on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TrialError {
+    /// Without any answer, there is no concept.
+    #[error(
+        "no concept is consistent with what is known at the start: check it, or allow larger concepts"
+    )]
+    Contradiction,
+    /// The teacher's reply was refused.
+    #[error("the teacher's reply was refused: {0}")]
+    Reply(#[from] ReplyError),
+}
+
+/// Runs `learner` against `teacher` until they agree or `max_questions` have
+/// been asked. `clock` tells CPU time, and `observe` hears of every question.
+///
+/// Answers that contradict each other are treated as section 5.2 of the
+/// dissertation has it: the minimal set is dropped, and learning goes on.
+/// Counterexamples in it stay, unless there is nothing else to drop.
+///
+/// # Errors
+///
+/// If the learner or the teacher was set up wrongly.
+pub fn teach<C, T>(
+    learner: &mut Learner<C>,
+    teacher: &mut T,
+    max_questions: u32,
+    clock: fn() -> Duration,
+    mut observe: impl FnMut(&Asked<'_, C::Atom, C::Concept>),
+) -> Result<Report<C::Concept>, TrialError>
+where
+    C: ConceptClass,
+    T: Teacher<Atom = C::Atom, Concept = C::Concept>,
+{
+    let start = clock();
+    let mut report = Report {
+        learned: None,
+        counts: Counts::default(),
+        cost: 0.0,
+        dropped: 0,
+        hurried: 0,
+        question_times: Vec::new(),
+        cpu: Duration::ZERO,
+    };
+    let mut number = 0;
+    let mut since = clock();
+    loop {
+        match learner.next() {
+            Step::Done { hypothesis } => {
+                report.learned = Some(hypothesis);
+                break;
+            }
+            Step::Conflict(conflict) => {
+                if conflict.answers.is_empty() {
+                    return Err(TrialError::Contradiction);
+                }
+                let dropped = doubted(learner, conflict.answers);
+                for answer in dropped {
+                    report.dropped += u32::from(learner.retract(answer));
+                }
+            }
+            Step::Ask {
+                question,
+                round,
+                hurried,
+            } => {
+                if number == max_questions {
+                    break;
+                }
+                number += 1;
+                report.question_times.push(clock().saturating_sub(since));
+                report.hurried += u32::from(hurried);
+                let reply = ask(teacher, &question);
+                match question {
+                    Question::Membership { .. } => report.counts.membership += 1,
+                    Question::Comparison { .. } => report.counts.comparison += 1,
+                    Question::Equivalence { .. } => report.counts.equivalence += 1,
+                }
+                observe(&Asked {
+                    number,
+                    question: &question,
+                    reply: &reply,
+                });
+                learner.record(AnswerId(number), question, round, reply)?;
+                since = clock();
+            }
+        }
+    }
+    report.cost = cost(learner, report.counts);
+    report.cpu = clock().saturating_sub(start);
+    Ok(report)
+}
+
+/// Those of the answers that are dropped: all but the counterexamples, and these
+/// only if there is nothing else to drop. Who shows a counterexample has looked
+/// at the hypothesis, and to drop it would bring the same hypothesis again.
+fn doubted<C: ConceptClass>(learner: &Learner<C>, answers: Vec<AnswerId>) -> Vec<AnswerId> {
+    let is_counterexample = |answer: AnswerId| {
+        learner.entries().iter().any(|entry| {
+            entry.answer == answer && matches!(entry.question, Question::Equivalence { .. })
+        })
+    };
+    let (counterexamples, doubted): (Vec<_>, Vec<_>) =
+        answers.into_iter().partition(|&a| is_counterexample(a));
+    if doubted.is_empty() {
+        counterexamples
+    } else {
+        doubted
+    }
+}
+
+/// Eq. 5.2. No comparisons cost nothing, also where one would be infinite.
+fn cost<C: ConceptClass>(learner: &Learner<C>, counts: Counts) -> f64 {
+    let config = learner.config();
+    let of = |count: u32, cost: f64| {
+        if count == 0 {
+            0.0
+        } else {
+            f64::from(count) * cost
+        }
+    };
+    of(counts.membership, config.membership_cost) + of(counts.comparison, config.comparison_cost)
+}
+
+fn ask<T: Teacher>(teacher: &mut T, question: &Question<T::Atom, T::Concept>) -> Reply<T::Atom> {
+    match question {
+        Question::Membership { atom } => {
+            if teacher.membership(atom) {
+                Reply::Accept
+            } else {
+                Reply::Reject
+            }
+        }
+        Question::Comparison { first, second } => {
+            Reply::Compared(teacher.comparison(first, second))
+        }
+        Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
+            Some((atom, label)) => Reply::Counterexample { atom, label },
+            None => Reply::Correct,
+        },
+    }
+}
+
+/// The smallest of the times that at least `percent` in a hundred of them do
+/// not exceed (the nearest rank); zero for none.
+pub fn percentile(times: &[Duration], percent: usize) -> Duration {
+    let mut sorted = times.to_vec();
+    sorted.sort_unstable();
+    let rank = (sorted.len() * percent).div_ceil(100);
+    sorted
+        .get(rank.saturating_sub(1))
+        .copied()
+        .unwrap_or_default()
+}

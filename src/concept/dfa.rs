@@ -1,0 +1,73 @@
+//! The languages of deterministic finite automata, by their number of states.
+
+use automata::{Alphabet, Dfa, Word};
+
+use super::{ConceptClass, Failure, Sample};
+use crate::evidence::{AnswerId, Budget, Fact};
+use crate::identify::{Identifier, Settings};
+
+/// All regular languages over an alphabet: the concepts are minimal automata,
+/// the atoms words, and the size is the number of states.
+pub struct DfaClass {
+    alphabet: Alphabet,
+    identifier: Identifier,
+}
+
+impl DfaClass {
+    /// The languages over this alphabet, with at most `settings.max_states`
+    /// states.
+    pub fn new(alphabet: Alphabet, settings: Settings) -> Self {
+        Self {
+            identifier: Identifier::new(alphabet.clone(), settings),
+            alphabet,
+        }
+    }
+
+    /// The alphabet of the words.
+    pub fn alphabet(&self) -> &Alphabet {
+        &self.alphabet
+    }
+}
+
+impl ConceptClass for DfaClass {
+    type Concept = Dfa;
+    type Atom = Word;
+
+    fn add(&mut self, answer: Option<AnswerId>, fact: Fact<Word>) {
+        self.identifier.add(answer, fact);
+    }
+
+    fn retract(&mut self, answer: AnswerId) {
+        self.identifier.retract(answer);
+    }
+
+    fn contains(&self, concept: &Dfa, atom: &Word) -> bool {
+        concept.accepts(atom)
+    }
+
+    fn sample(
+        &mut self,
+        count: usize,
+        seed: u64,
+        budget: &mut Budget,
+    ) -> Result<Sample<Dfa>, Failure> {
+        let sample = self.identifier.smallest(count, seed, budget)?;
+        Ok(Sample {
+            concepts: sample.automata,
+            complete: sample.complete,
+        })
+    }
+
+    fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {
+        // Two automata over different alphabets have no common words to differ
+        // on; all automata of this class are over its own.
+        inside
+            .product(outside, |inside, outside| inside && !outside)
+            .map(|difference| difference.accepted_words().take(count).collect())
+            .unwrap_or_default()
+    }
+
+    fn atoms(&self) -> Box<dyn Iterator<Item = Word> + '_> {
+        Box::new(self.alphabet.words())
+    }
+}

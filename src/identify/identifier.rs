@@ -1,0 +1,274 @@
+//! The [`Identifier`]: keeps the facts that stand, goes through the sizes, and
+//! believes no engine's automaton before it has run it.
+
+use std::collections::BTreeMap;
+
+use automata::{Alphabet, Dfa, Word};
+
+use super::contradiction::{self, Finding};
+use super::engine::{Engine, Query, Verdict};
+use super::enumerate::Enumerator;
+use super::problem::{FactId, Problem};
+use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
+use crate::evidence::{AnswerId, Budget, Fact};
+
+/// The nodes that [`EngineChoice::Auto`] gives the enumerator for one size, as
+/// far as [`ENUMERATED_STATES`]: about half a second.
+const ENUMERATED_NODES: u64 = 300_000;
+/// The size up to which the enumerator is usually faster than SAT.
+const ENUMERATED_STATES: usize = 8;
+/// Its nodes for larger sizes: enough where nearly everything is forced.
+const GLANCED_NODES: u64 = 10_000;
+
+/// An incremental search for the smallest consistent automata: facts come and
+/// go, and what was learned from the others is kept.
+pub struct Identifier {
+    settings: Settings,
+    problem: Problem,
+    /// The facts that stand, ascending.
+    standing: Vec<FactId>,
+    by_answer: BTreeMap<AnswerId, Vec<FactId>>,
+    /// No automaton with fewer states is consistent.
+    at_least: usize,
+    engines: Engines,
+}
+
+impl Identifier {
+    /// A search over all DFAs with this alphabet.
+    pub fn new(alphabet: Alphabet, settings: Settings) -> Self {
+        Self {
+            settings,
+            problem: Problem::new(alphabet),
+            standing: Vec::new(),
+            by_answer: BTreeMap::new(),
+            at_least: 1,
+            engines: Engines::default(),
+        }
+    }
+
+    /// Adds a fact. `None` for one that is known from the start and can never
+    /// be retracted; several facts may carry the same answer.
+    ///
+    /// # Panics
+    ///
+    /// If a word has a symbol that the alphabet does not have.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a fact is handed over, whatever is kept of it"
+    )]
+    pub fn add(&mut self, answer: Option<AnswerId>, fact: Fact<Word>) {
+        let Some(id) = self.problem.add(answer, &fact) else {
+            return;
+        };
+        self.standing.push(id);
+        if let Some(answer) = answer {
+            self.by_answer.entry(answer).or_default().push(id);
+        }
+    }
+
+    /// Takes back all facts of an answer.
+    pub fn retract(&mut self, answer: AnswerId) {
+        if let Some(gone) = self.by_answer.remove(&answer) {
+            self.standing.retain(|fact| !gone.contains(fact));
+            // Without these facts smaller automata may be consistent again.
+            self.at_least = 1;
+        }
+    }
+
+    /// Up to `count` different automata of the smallest consistent size.
+    ///
+    /// If there are more, it is a random sample, and a function of the standing
+    /// facts and `seed` alone: not of the order in which facts came, of what
+    /// was retracted, or of what was asked before. Only the budget, where it
+    /// ends the search, can make a difference.
+    ///
+    /// # Errors
+    ///
+    /// If no automaton within the bound is consistent, or the budget ends.
+    pub fn smallest(
+        &mut self,
+        count: usize,
+        seed: u64,
+        budget: &mut Budget,
+    ) -> Result<Sample, Failure> {
+        self.smallest_watched(count, seed, budget, &mut |_| {})
+    }
+
+    /// The same as [`Self::smallest`], and tells `trying` every number of states
+    /// before it is tried.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::smallest`].
+    pub fn smallest_watched(
+        &mut self,
+        count: usize,
+        seed: u64,
+        budget: &mut Budget,
+        trying: &mut dyn FnMut(usize),
+    ) -> Result<Sample, Failure> {
+        if let Some(answers) = contradiction::memrep(&self.problem, &self.standing) {
+            return Err(Failure::Contradiction(Contradiction {
+                answers: answers.into_iter().collect(),
+                cause: Cause::MemRep,
+                minimal: true,
+            }));
+        }
+        let bound = self.settings.max_states.max(1);
+        let mut core = self.standing.clone();
+        while self.at_least <= bound {
+            trying(self.at_least);
+            let query = Query {
+                problem: &self.problem,
+                standing: &self.standing,
+                states: self.at_least,
+                count: count.max(1),
+                seed,
+            };
+            match self.engines.search(self.settings.engine, &query, budget) {
+                Verdict::Found {
+                    mut automata,
+                    complete,
+                } => {
+                    automata.sort_by_cached_key(simplicity);
+                    return Ok(Sample { automata, complete });
+                }
+                Verdict::None { core: claim } => {
+                    core = claim;
+                    self.at_least += 1;
+                }
+                Verdict::OverBudget => {
+                    return Err(Failure::OverBudget {
+                        at_least: self.at_least,
+                    });
+                }
+            }
+        }
+        Err(Failure::Contradiction(self.no_automaton(&core, budget)))
+    }
+
+    /// Why no automaton within the bound is consistent.
+    fn no_automaton(&mut self, core: &[FactId], budget: &mut Budget) -> Contradiction {
+        let bound = self.settings.max_states.max(1);
+        let (problem, engines) = (&self.problem, &mut self.engines);
+        let choice = self.settings.engine;
+        let (answers, minimal) =
+            contradiction::minimise(problem, &self.standing, core, |standing| {
+                let query = Query {
+                    problem,
+                    standing,
+                    states: bound,
+                    count: 1,
+                    seed: 0,
+                };
+                match engines.search(choice, &query, budget) {
+                    Verdict::Found { automata, .. } => Finding::Consistent(automata),
+                    Verdict::None { core } => Finding::Contradictory(core),
+                    Verdict::OverBudget => Finding::Unknown,
+                }
+            });
+        Contradiction {
+            answers: answers.into_iter().collect(),
+            cause: Cause::States { bound },
+            minimal,
+        }
+    }
+}
+
+/// Simplest first: most self-loops, then by the table.
+fn simplicity(dfa: &Dfa) -> (usize, Vec<usize>) {
+    let mut changes = 0;
+    let mut table = Vec::with_capacity(dfa.size() * (dfa.alphabet().len() + 1));
+    for state in dfa.states() {
+        for symbol in dfa.alphabet().symbols() {
+            let next = dfa.next(state, symbol);
+            changes += usize::from(next != state);
+            table.push(next.index());
+        }
+    }
+    table.extend(
+        dfa.states()
+            .map(|state| usize::from(dfa.is_accepting(state))),
+    );
+    (changes, table)
+}
+
+/// The engines, each made when it is first needed.
+#[derive(Default)]
+struct Engines {
+    enumerator: Enumerator,
+    varisat: Option<Box<dyn Engine + Send>>,
+    batsat: Option<Box<dyn Engine + Send>>,
+}
+
+impl Engines {
+    /// Answers a query by the chosen engine. What it finds is consistent.
+    fn search(&mut self, choice: EngineChoice, query: &Query<'_>, budget: &mut Budget) -> Verdict {
+        match choice {
+            EngineChoice::Enumerate => trusted(&mut self.enumerator, query, budget),
+            EngineChoice::Varisat => trusted(self.varisat(), query, budget),
+            EngineChoice::Batsat => trusted(self.batsat(), query, budget),
+            EngineChoice::Auto => {
+                let share = enumerator_share(query);
+                let mut nodes = Budget::new(share.min(budget.left()));
+                let given = nodes.left();
+                let verdict = trusted(&mut self.enumerator, query, &mut nodes);
+                let enough = budget.spend(given - nodes.left());
+                if !matches!(verdict, Verdict::OverBudget) || !enough || budget.is_spent() {
+                    return verdict;
+                }
+                let verdict = trusted(self.varisat(), query, budget);
+                if !matches!(verdict, Verdict::OverBudget) || budget.is_spent() {
+                    return verdict;
+                }
+                // Budget is left, so the engine failed rather than the budget.
+                trusted(self.batsat(), query, budget)
+            }
+        }
+    }
+
+    fn varisat(&mut self) -> &mut dyn Engine {
+        self.varisat
+            .get_or_insert_with(sat::varisat_engine)
+            .as_mut()
+    }
+
+    fn batsat(&mut self) -> &mut dyn Engine {
+        self.batsat.get_or_insert_with(sat::batsat_engine).as_mut()
+    }
+}
+
+/// The nodes the enumerator may take before SAT has its turn. It depends on
+/// nothing but the query's size, so that earlier searches leave no trace.
+fn enumerator_share(query: &Query<'_>) -> u64 {
+    if query.problem.alphabet().len() == 1 {
+        // One path that closes somewhere: a search as long as the automaton.
+        u64::MAX
+    } else if query.states <= ENUMERATED_STATES {
+        ENUMERATED_NODES
+    } else {
+        GLANCED_NODES
+    }
+}
+
+/// Lets an engine search, and runs all facts on whatever it found. An engine
+/// that is wrong has failed: its answer counts as none.
+fn trusted(engine: &mut dyn Engine, query: &Query<'_>, budget: &mut Budget) -> Verdict {
+    let verdict = engine.search(query, budget);
+    if let Verdict::Found { automata, .. } = &verdict {
+        let right = |dfa: &Dfa| {
+            dfa.size() <= query.states
+                && dfa.alphabet() == query.problem.alphabet()
+                && contradiction::agrees(query.problem, dfa, query.standing)
+        };
+        let good = !automata.is_empty() && automata.iter().all(right);
+        debug_assert!(
+            good,
+            "an engine returned an automaton that is not consistent"
+        );
+        if !good {
+            return Verdict::OverBudget;
+        }
+    }
+    verdict
+}

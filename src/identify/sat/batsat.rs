@@ -1,0 +1,114 @@
+//! The solver `batsat`, stopped through its callback.
+
+use std::cell::Cell;
+
+use batsat::{Callbacks, ClauseKind, SolverInterface, lbool};
+
+use super::solver::{Answer, Lit, Model, Solver};
+use crate::evidence::Budget;
+
+/// The units of work that one decision takes (measured: one to two µs with
+/// what it propagates).
+const UNITS_PER_DECISION: u64 = 1;
+
+/// The units of work that one conflict takes, and those for every literal of
+/// the clause learned from it.
+const UNITS_PER_CONFLICT: u64 = 10;
+
+/// Counts work, and stops the solver when there has been enough.
+struct Meter {
+    /// The solver asks from behind a shared reference whether to stop.
+    left: Cell<u64>,
+}
+
+impl Meter {
+    fn take(&self, units: u64) {
+        self.left.set(self.left.get().saturating_sub(units));
+    }
+}
+
+impl Callbacks for Meter {
+    fn on_new_clause(&mut self, clause: &[batsat::Lit], _: ClauseKind) {
+        self.take(UNITS_PER_CONFLICT + clause.len() as u64 / 2);
+    }
+
+    /// Asked at every decision. Once true it stays true until the next solve,
+    /// as the solver asks twice.
+    fn stop(&self) -> bool {
+        self.take(UNITS_PER_DECISION);
+        self.left.get() == 0
+    }
+}
+
+/// A `batsat` solver.
+pub(super) struct Batsat {
+    solver: batsat::Solver<Meter>,
+    variables: usize,
+    clause: Vec<batsat::Lit>,
+}
+
+impl Batsat {
+    /// A solver without variables and clauses.
+    pub(super) fn new() -> Self {
+        let meter = Meter {
+            left: Cell::new(u64::MAX),
+        };
+        Self {
+            solver: batsat::Solver::new(batsat::SolverOpts::default(), meter),
+            variables: 0,
+            clause: Vec::new(),
+        }
+    }
+
+    fn lit(&mut self, lit: Lit) -> batsat::Lit {
+        let index = u32::try_from(lit.index()).expect("a literal's index comes from 32 bits");
+        batsat::Lit::new(self.solver.var_of_int(index), lit.is_positive())
+    }
+}
+
+impl Solver for Batsat {
+    fn new_var(&mut self) -> Lit {
+        self.solver.new_var_default();
+        self.variables += 1;
+        Lit::new(self.variables - 1, true)
+    }
+
+    fn add_clause(&mut self, clause: &[Lit]) {
+        let mut translated = std::mem::take(&mut self.clause);
+        translated.clear();
+        for &lit in clause {
+            let lit = self.lit(lit);
+            translated.push(lit);
+        }
+        // What it returns, whether a contradiction has shown, the next solve
+        // says as well.
+        self.solver.add_clause_reuse(&mut translated);
+        self.clause = translated;
+    }
+
+    fn solve(&mut self, assumptions: &[Lit], budget: &mut Budget) -> Answer {
+        if !budget.spend(1) {
+            return Answer::Unknown;
+        }
+        let assumptions: Vec<_> = assumptions.iter().map(|&lit| self.lit(lit)).collect();
+        let allowed = budget.left();
+        self.solver.cb_mut().left.set(allowed);
+        let result = self.solver.solve_limited(&assumptions);
+        let used = allowed - self.solver.cb().left.get();
+        // Cannot fail: no more is used than was allowed.
+        let _ = budget.spend(used);
+        if result == lbool::TRUE {
+            let values = self.solver.get_model().iter();
+            Answer::Sat(Model(values.map(|&value| value == lbool::TRUE).collect()))
+        } else if result == lbool::FALSE {
+            // The solver names the negations of the assumptions.
+            let core = self.solver.unsat_core().iter();
+            Answer::Unsat(
+                core.map(|lit| Lit::new(lit.var().idx() as usize, !lit.sign()))
+                    .collect(),
+            )
+        } else {
+            Answer::Unknown
+        }
+    }
+}

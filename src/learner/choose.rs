@@ -1,0 +1,208 @@
+//! Algorithms 4 and 5: from the evidence to the next move.
+
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::exp4::{COMPARISON, MEMBERSHIP};
+use super::experts::{Losses, Round};
+use super::selection::{CONCEPTS, Candidates, Compare, Judge, select};
+use super::{Learner, Question, Step, Strategy};
+use crate::concept::{ConceptClass, Failure};
+use crate::evidence::Budget;
+
+/// How many consistent concepts stand for all of them: the share that an answer
+/// leaves (Eq. 5.3) is then known to about `√(1/4·32)`, nine in a hundred, which
+/// is finer than the difference that the experts' temperature lets count.
+const SAMPLE: usize = 32;
+
+/// A step, and the simplest concept known to be consistent.
+type Move<C> = (
+    Step<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
+    Option<<C as ConceptClass>::Concept>,
+);
+
+impl<C: ConceptClass> Learner<C> {
+    /// The next move, by Algorithm 4.
+    pub(super) fn choose(&mut self) -> Move<C> {
+        if let Some(conflict) = self.evidence.order.conflict() {
+            return (Step::Conflict(conflict), None);
+        }
+        if let Some(hypothesis) = self.agreed() {
+            let step = Step::Done {
+                hypothesis: hypothesis.clone(),
+            };
+            return (step, Some(hypothesis));
+        }
+        let mut random = self.generator();
+        let mut budget = Budget::new(self.config.budget);
+        let sample = match self.class.sample(SAMPLE, random.random(), &mut budget) {
+            Ok(sample) => sample,
+            Err(Failure::Contradiction(conflict)) => return (Step::Conflict(conflict), None),
+            Err(Failure::OverBudget { .. }) => return self.without_candidates(random.random()),
+        };
+        let simplest = sample.concepts.first().cloned();
+        let hurried = !sample.complete && sample.concepts.len() < SAMPLE;
+        let step = match (&sample.concepts[..], sample.complete) {
+            ([only], true) => ask(equivalence(only), None, false),
+            ([only], false) => self.with_one_candidate(only),
+            (concepts, _) => {
+                let (question, round) = self.question(concepts, &mut random).unwrap_or_else(|| {
+                    // All that could tell them apart was skipped.
+                    (equivalence(&concepts[0]), None)
+                });
+                ask(question, round, hurried)
+            }
+        };
+        (step, simplest)
+    }
+
+    /// The generator of this step. A stream of its own for every number of
+    /// entries: what was drawn earlier has no say in it.
+    fn generator(&self) -> ChaCha8Rng {
+        let mut random = ChaCha8Rng::seed_from_u64(self.config.seed);
+        random.set_stream(self.entries.len() as u64);
+        random
+    }
+
+    /// A question that tells two concepts of the sample apart: two drawn
+    /// uniformly, or, where nothing can be asked about these, any two.
+    fn question(
+        &self,
+        concepts: &[C::Concept],
+        random: &mut ChaCha8Rng,
+    ) -> Option<(Question<C::Atom, C::Concept>, Option<Round>)> {
+        let mut places: Vec<usize> = (0..concepts.len()).collect();
+        places.shuffle(random);
+        let pairs = places
+            .iter()
+            .enumerate()
+            .flat_map(|(index, &one)| places[index + 1..].iter().map(move |&other| [one, other]));
+        for psi in pairs {
+            let candidates = self.candidates(concepts, psi);
+            if candidates.membership.is_some() || candidates.comparison.is_some() {
+                return self.pull(candidates, random);
+            }
+        }
+        None
+    }
+
+    fn candidates(&self, concepts: &[C::Concept], psi: [usize; CONCEPTS]) -> Candidates<C::Atom> {
+        let comparisons = self.compares();
+        select(&self.class, &self.evidence, concepts, psi, comparisons)
+    }
+
+    /// Whether comparisons are asked at all.
+    fn compares(&self) -> bool {
+        self.config.strategy == Strategy::Thesis && self.config.comparison_cost.is_finite()
+    }
+
+    /// Algorithm 5: lets the bandit choose between the candidates.
+    fn pull(
+        &self,
+        candidates: Candidates<C::Atom>,
+        random: &mut ChaCha8Rng,
+    ) -> Option<(Question<C::Atom, C::Concept>, Option<Round>)> {
+        let config = &self.config;
+        // Which of two atoms is shown first is drawn, so that the place says
+        // nothing and a habit of choosing the first does no harm.
+        let membership = candidates.membership.map(
+            |Judge {
+                 atom,
+                 accept,
+                 reject,
+             }| {
+                let losses = Losses::of_membership(config, accept, reject);
+                (Question::Membership { atom }, losses)
+            },
+        );
+        let comparison = candidates.comparison.map(|compare| {
+            let Compare {
+                left,
+                right,
+                left_better,
+                right_better,
+                equal,
+            } = if random.random() {
+                compare
+            } else {
+                compare.mirrored()
+            };
+            let losses = Losses::of_comparison(config, left_better, right_better, equal);
+            let (first, second) = (left, right);
+            (Question::Comparison { first, second }, losses)
+        });
+        if !self.compares() {
+            return membership.map(|(question, _)| (question, None));
+        }
+        let mut arms = [membership, comparison];
+        let losses = [MEMBERSHIP, COMPARISON].map(|arm| arms[arm].as_ref().map(|(_, l)| l));
+        let (advice, probabilities) = self.bandit.advise(losses);
+        let drawn = usize::from(random.random::<f64>() >= probabilities[MEMBERSHIP]);
+        let (question, losses) = arms[drawn].take().or_else(|| arms[1 - drawn].take())?;
+        let [pessimistic, historical] = advice;
+        let round = Round {
+            pessimistic,
+            historical,
+            probabilities,
+            losses,
+        };
+        Some((question, Some(round)))
+    }
+
+    /// The budget showed no consistent concept: the simplest atom of which
+    /// nothing is known makes the next search easier, whatever it is.
+    fn without_candidates(&mut self, seed: u64) -> Move<C> {
+        if let Some(atom) = self.unknown_atom() {
+            return (ask(Question::Membership { atom }, None, true), None);
+        }
+        // Everything is known or skipped, so the universe is finite, and so is
+        // the search for a concept.
+        match self.class.sample(1, seed, &mut Budget::unlimited()) {
+            Ok(sample) => {
+                let concept = sample.concepts.into_iter().next();
+                let step = concept.as_ref().map(equivalence);
+                let step = step.expect("a sample has at least one concept");
+                (ask(step, None, true), concept)
+            }
+            Err(Failure::Contradiction(conflict)) => (Step::Conflict(conflict), None),
+            Err(Failure::OverBudget { .. }) => unreachable!("an unlimited budget never ends"),
+        }
+    }
+
+    /// The budget showed one concept and not whether there are others. It is put
+    /// to the teacher, whose counterexample would say the most; but not twice in
+    /// a row, as a counterexample is the dearest answer to give.
+    fn with_one_candidate(&self, only: &C::Concept) -> Step<C::Atom, C::Concept> {
+        let shown = self
+            .entries
+            .last()
+            .is_some_and(|entry| matches!(entry.question, Question::Equivalence { .. }));
+        let question = match self.unknown_atom() {
+            Some(atom) if shown => Question::Membership { atom },
+            _ => equivalence(only),
+        };
+        ask(question, None, true)
+    }
+
+    /// The simplest atom that is neither labelled nor skipped.
+    fn unknown_atom(&self) -> Option<C::Atom> {
+        self.class
+            .atoms()
+            .find(|atom| self.evidence.may_judge(atom))
+    }
+}
+
+fn equivalence<A, C: Clone>(hypothesis: &C) -> Question<A, C> {
+    Question::Equivalence {
+        hypothesis: hypothesis.clone(),
+    }
+}
+
+fn ask<A, C>(question: Question<A, C>, round: Option<Round>, hurried: bool) -> Step<A, C> {
+    Step::Ask {
+        question,
+        round,
+        hurried,
+    }
+}

@@ -1,0 +1,190 @@
+//! Losses (Eq. 5.3), and the two experts who advise on them: one fears the
+//! worst answer, the other remembers what each kind of question came to.
+
+use serde::{Deserialize, Serialize};
+
+use super::exp4::{Advice, Arms, COMPARISON, Exp4, MEMBERSHIP, softmax};
+use super::{Config, Reply};
+use crate::evidence::Comparison;
+
+/// The temperature of the experts' softmax. Losses lie in `[0, 1]`, and at 1
+/// (what the authors' public code has) the best and the worst arm would be
+/// pulled 73 to 27. TEMPERATURE_REASON
+const TEMPERATURE: f64 = 0.25;
+
+/// The loss that each answer to a question would mean: the share of the
+/// concepts that it leaves consistent, times the question's cost, divided by
+/// the larger of the costs (Eq. 5.3). In `[0, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Losses {
+    /// Of a membership query.
+    Membership {
+        /// If the atom is accepted.
+        accept: f64,
+        /// If it is rejected.
+        reject: f64,
+    },
+    /// Of a comparison.
+    Comparison {
+        /// If the first is better.
+        first: f64,
+        /// If the second is better.
+        second: f64,
+        /// If both are equal.
+        equal: f64,
+        /// If they cannot be compared: nothing was learned, and the cost paid.
+        incomparable: f64,
+    },
+}
+
+impl Losses {
+    /// The losses of a membership query that would leave these shares.
+    pub(super) fn of_membership(config: &Config, accept: f64, reject: f64) -> Self {
+        let price = price(config, config.membership_cost);
+        Self::Membership {
+            accept: price * accept,
+            reject: price * reject,
+        }
+    }
+
+    /// The losses of a comparison that would leave these shares.
+    pub(super) fn of_comparison(config: &Config, first: f64, second: f64, equal: f64) -> Self {
+        let price = price(config, config.comparison_cost);
+        Self::Comparison {
+            first: price * first,
+            second: price * second,
+            equal: price * equal,
+            incomparable: price,
+        }
+    }
+
+    /// The arm that was pulled.
+    pub(super) fn arm(&self) -> usize {
+        match self {
+            Self::Membership { .. } => MEMBERSHIP,
+            Self::Comparison { .. } => COMPARISON,
+        }
+    }
+
+    /// The loss that an answer brought; none for one that is no answer to this
+    /// kind of question, and for a skipped question, which taught nothing about
+    /// the arm.
+    pub fn of<A>(&self, reply: &Reply<A>) -> Option<f64> {
+        match (self, reply) {
+            (Self::Membership { accept, .. }, Reply::Accept) => Some(*accept),
+            (Self::Membership { reject, .. }, Reply::Reject) => Some(*reject),
+            (
+                Self::Comparison {
+                    first,
+                    second,
+                    equal,
+                    incomparable,
+                },
+                Reply::Compared(answer),
+            ) => Some(match answer {
+                Comparison::First => *first,
+                Comparison::Second => *second,
+                Comparison::Equal => *equal,
+                Comparison::Incomparable => *incomparable,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The worst loss. That of an incomparable pair is left out: it is always
+    /// the whole cost, and would hide every difference between pairs.
+    pub(super) fn worst(&self) -> f64 {
+        match self {
+            Self::Membership { accept, reject } => accept.max(*reject),
+            Self::Comparison {
+                first,
+                second,
+                equal,
+                ..
+            } => first.max(*second).max(*equal),
+        }
+    }
+}
+
+/// `c / max(a, b)`. An infinite comparison cost means that there are no
+/// comparisons, and so the maximum is over what is asked at all.
+fn price(config: &Config, cost: f64) -> f64 {
+    let largest = if config.comparison_cost.is_finite() {
+        config.membership_cost.max(config.comparison_cost)
+    } else {
+        config.membership_cost
+    };
+    cost / largest
+}
+
+/// What the bandit must remember of the round in which a question was chosen
+/// (Algorithm 5), so that the answer alone completes the round.
+///
+/// Arms are in the order membership query, comparison.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// The probabilities with which the pessimistic expert would pull each arm.
+    pub pessimistic: Arms,
+    /// The same of the historical expert.
+    pub historical: Arms,
+    /// The probabilities with which the arms were pulled.
+    pub probabilities: Arms,
+    /// The loss that each answer to the chosen question means.
+    pub losses: Losses,
+}
+
+/// The experts' memory and the bandit's weights: a fold over rounds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Bandit {
+    exp4: Exp4,
+    /// The sum of the losses that each arm incurred, and their number.
+    incurred: [(f64, u32); 2],
+}
+
+impl Bandit {
+    /// What the experts advise on these arms, given the losses of their answers
+    /// (none for an arm that is not on offer), and the probabilities with which
+    /// the arms are to be pulled.
+    pub(super) fn advise(&self, arms: [Option<&Losses>; 2]) -> (Advice, Arms) {
+        let worst = arms.map(|arm| arm.map(Losses::worst));
+        let mean: [Option<f64>; 2] = std::array::from_fn(|arm| {
+            // An arm that was never pulled has no history: its worst loss is
+            // all that is known of it.
+            let (sum, pulls) = self.incurred[arm];
+            worst[arm].map(|worst| {
+                if pulls == 0 {
+                    worst
+                } else {
+                    sum / f64::from(pulls)
+                }
+            })
+        });
+        let advice = [advice(worst), advice(mean)];
+        let offered = arms.map(|arm| arm.is_some());
+        let probabilities = self.exp4.probabilities(&advice, offered);
+        (advice, probabilities)
+    }
+
+    /// Completes a round.
+    pub(super) fn learn<A>(&mut self, round: &Round, reply: &Reply<A>) {
+        let arm = round.losses.arm();
+        let Some(loss) = round.losses.of(reply) else {
+            return;
+        };
+        // A round read from a damaged log must not poison the weights.
+        if round.probabilities[arm].is_nan() || round.probabilities[arm] <= 0.0 {
+            return;
+        }
+        let advice = [round.pessimistic, round.historical];
+        self.exp4.update(&advice, round.probabilities, arm, loss);
+        self.incurred[arm].0 += loss;
+        self.incurred[arm].1 += 1;
+    }
+}
+
+/// The softmax of the losses with their sign turned, so that a small loss has a
+/// large probability; an arm that is not offered has none.
+fn advice(losses: [Option<f64>; 2]) -> Arms {
+    softmax(losses.map(|loss| loss.map_or(f64::NEG_INFINITY, |loss| -loss / TEMPERATURE)))
+}
