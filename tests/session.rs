@@ -211,7 +211,7 @@ fn too_small_a_bound_is_a_conflict_that_a_larger_one_resolves() {
 
 #[test]
 fn refusals_say_what_to_do() {
-    let mut kept = Kept::begin(ready("tomita:5").unwrap(), Setup::default());
+    let mut kept = Kept::begin(ready("robot").unwrap(), Setup::default());
     let session = &kept.session;
     let (open, question) = kept.open().unwrap();
     let wrong = Reply::Correct;
@@ -239,7 +239,7 @@ fn refusals_say_what_to_do() {
     }
     let unfit = session.answer(open, &wrong).unwrap_err().to_string();
     assert!(unfit.contains("does not fit question 1"), "{unfit}");
-    let reply = truthfully(&mut teacher_of("tomita:5"), &question);
+    let reply = truthfully(&mut teacher_of("robot"), &question);
     kept.act(|session| session.answer(open, &reply)).unwrap();
     let closed = kept
         .session
@@ -391,7 +391,8 @@ proptest! {
 
         let mut cut = Session::replay(&kept.log[..kept.log.len() - 1]).unwrap();
         prop_assert_eq!(cut.position(), &Position::Thinking);
-        prop_assert_eq!(cut.think().as_ref(), kept.log.last());
+        let thought = cut.think();
+        prop_assert_eq!(thought.as_ref(), kept.log.last());
     }
 
     /// What is asked depends on the answers that stand alone: a log in which

@@ -106,6 +106,40 @@ pub(crate) fn read_automaton(path: &Path, asked: Option<Format>) -> anyhow::Resu
     }
 }
 
+/// An item's line in its file: the number, from 1, and the text.
+pub(crate) struct ItemLine {
+    pub(crate) number: usize,
+    pub(crate) text: String,
+}
+
+/// Reads a sample, with the line of each of its items.
+pub(crate) fn read_sample(
+    path: &Path,
+    asked: Option<Format>,
+) -> anyhow::Result<(Sample, Vec<ItemLine>)> {
+    let parse = match Format::choose(asked, path, "--from")? {
+        Format::Abb => abbadingo::read,
+        Format::Jsonl => jsonl::read,
+        other => bail!(
+            "{}: expected a sample (abb or jsonl), not the format {other}, which holds an automaton",
+            path.display()
+        ),
+    };
+    let text = text(path)?;
+    let sample = parse(&text).with_context(|| path.display().to_string())?;
+    // In both formats an item is a line that is not empty; what comes before
+    // the items, the sizes or the alphabet, is one as well.
+    let filled = (text.lines().enumerate()).filter(|(_, line)| !line.trim().is_empty());
+    let mut lines: Vec<ItemLine> = filled
+        .map(|(index, line)| ItemLine {
+            number: index + 1,
+            text: line.trim().to_owned(),
+        })
+        .collect();
+    lines.drain(..lines.len() - sample.items().len());
+    Ok((sample, lines))
+}
+
 /// The text of a file.
 fn text(path: &Path) -> anyhow::Result<String> {
     let mut bytes = Vec::new();

@@ -55,7 +55,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Some(Command::Learn(args)) => learn::run(&args),
-        Some(Command::Identify(args)) => identify::run(args),
+        Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::Equivalent(args)) => equivalent::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

@@ -25,17 +25,17 @@ use crate::evidence::Budget;
 /// [`SPARSE`] leaves.
 const LISTING: u64 = 3_000;
 /// With fewer leaves, it goes on for so many more nodes.
-const SPARSE_LISTING: u64 = 20_000;
-/// A few hundred leaves in [`LISTING`] nodes: dives then find one in about 100
-/// nodes.
-const SPARSE: usize = 300;
+const SPARSE_LISTING: u64 = 12_000;
+/// With that many leaves in [`LISTING`] nodes, dives find one in about 200 nodes.
+const SPARSE: usize = 150;
 /// Nodes that the dives of one search may take together.
-const DIVES: u64 = 3_000;
+const DIVES: u64 = 4_000;
 /// Nodes that listing goes on for at a time where dives found too few.
 const FINISHING: u64 = 20_000;
 
-/// The largest number of states for which words are placed one by one. From the
-/// next on, folding is faster on samples of all densities.
+/// The largest number of states for which words are placed one by one, unless
+/// that finds nothing soon: listing a version space is then faster. Beyond, and
+/// where nearly everything is refuted, folding is.
 const PLACED_STATES: usize = 8;
 
 /// The enumerator. It keeps nothing between searches.
@@ -49,26 +49,33 @@ impl Engine for Enumerator {
                 core: query.standing.to_vec(),
             };
         };
+        // A small version space is listed, and then drawn from evenly.
         if query.states <= PLACED_STATES {
-            search::<Partial<'_>>(&instance, query, budget)
-        } else {
-            search::<Merged<'_>>(&instance, query, budget)
+            let mut leaves = Leaves::default();
+            let mut listing = Walk::<Partial<'_>>::new(&instance, query.states);
+            let ended = leaves.gather(&mut listing, LISTING, budget);
+            if ended || leaves.len() > 0 {
+                return answer(&instance, query, leaves, listing, ended, budget);
+            }
         }
+        let mut leaves = Leaves::default();
+        let mut listing = Walk::<Merged<'_>>::new(&instance, query.states);
+        let ended = leaves.gather(&mut listing, LISTING, budget);
+        answer(&instance, query, leaves, listing, ended, budget)
     }
 }
 
-/// Answers the query about this instance.
-fn search<'a, G: Growing<'a>>(
+/// Answers the query, given the first leaves of a listing and whether these are
+/// all.
+fn answer<'a, G: Growing<'a>>(
     instance: &'a Instance,
     query: &Query<'_>,
+    mut leaves: Leaves,
+    mut listing: Walk<'a, G>,
+    mut ended: bool,
     budget: &mut Budget,
 ) -> Verdict {
     let mut rng = ChaCha8Rng::seed_from_u64(query.seed);
-    let mut listing = Walk::<G>::new(instance, query.states);
-    let mut leaves = Leaves::default();
-
-    // A small version space is listed, and then drawn from evenly.
-    let mut ended = leaves.gather(&mut listing, LISTING, budget);
     if !ended && leaves.len() < SPARSE {
         // Dives would mostly miss.
         ended = leaves.gather(&mut listing, SPARSE_LISTING, budget);

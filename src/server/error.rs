@@ -99,7 +99,7 @@ impl WebError {
     }
 
     /// The part of the request that is meant.
-    fn field(&self) -> Option<&str> {
+    pub(crate) fn field(&self) -> Option<&str> {
         match self {
             Self::Malformed(malformed) if !malformed.path.is_empty() => Some(&malformed.path),
             Self::Refused(refusal) => match refusal {
