@@ -113,6 +113,14 @@ fn pictures_stay_as_they_were_judged() {
     }
 }
 
+/// To be written anew, by `memrep convert` or from the snapshot, when drawings
+/// change.
+#[test]
+fn the_picture_in_the_readme_is_drawn_by_us() {
+    let drawn = draw::document(&robot(), &human()).unwrap();
+    assert_eq!(drawn, include_str!("../docs/images/robot.svg"));
+}
+
 #[test]
 fn an_element_obeys_a_strict_content_policy() {
     for (name, dfa, captions) in gallery() {
