@@ -2,16 +2,26 @@
 //!
 //! Every arrow is handed over in the direction of the breadth-first order, the
 //! way back as well: the graph is then free of cycles, the start alone is in
-//! the first layer, and no cycle breaker turns a square into a chain.
+//! the first layer, and no cycle breaker turns a square into a chain. The ways
+//! there and back between two states are one edge to `dagre`, with room for
+//! both: they then run side by side and never cross each other.
+
+use std::collections::BTreeMap;
 
 use dagre::graph::{Graph, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir};
 
 use super::curve::{LOOP_HEIGHT, Point, RADIUS};
-use super::sketch::Sketch;
+use super::sketch::{Arrow, Sketch};
 
 /// The free space around a label, in pixels.
 pub(super) const PADDING: f64 = 4.0;
+
+/// The free space between the labels of a way there and the way back, in pixels.
+const BETWEEN: f64 = 12.0;
+
+/// How far from each other's line they meet the circles, halved, in pixels.
+const ASIDE: f64 = 7.0;
 
 /// The places of a [`Sketch`]'s parts, in pixels, in the same order.
 pub(super) struct Plan {
@@ -27,13 +37,15 @@ pub(super) struct Route {
     pub(super) through: Vec<Point>,
     /// The middle of its label, on the way.
     pub(super) label: Point,
+    /// How far below the centres of its circles it aims, in pixels.
+    pub(super) aside: f64,
 }
 
 /// Finds a place for everything in `sketch`.
 pub(super) fn arrange(sketch: &Sketch) -> Plan {
     let mut graph: Graph<NodeLabel, EdgeLabel> = Graph::with_options(GraphOptions {
         directed: true,
-        multigraph: true,
+        multigraph: false,
         compound: false,
     });
     for (index, state) in sketch.states.iter().enumerate() {
@@ -49,16 +61,15 @@ pub(super) fn arrange(sketch: &Sketch) -> Plan {
         }
         graph.set_node(index.to_string(), Some(node));
     }
-    for (index, arrow) in sketch.arrows.iter().enumerate() {
-        let (low, high) = (arrow.from.min(arrow.to), arrow.from.max(arrow.to));
+    let lanes = lanes(sketch);
+    for (&(low, high), lane) in &lanes {
         let edge = EdgeLabel {
-            width: arrow.label.width + 2.0 * PADDING,
-            height: arrow.label.height() + 2.0 * PADDING,
+            width: lane.width + 2.0 * PADDING,
+            height: lane.height + 2.0 * PADDING,
             labelpos: dagre::layout::types::LabelPos::Center,
             ..EdgeLabel::default()
         };
-        let name = index.to_string();
-        graph.set_edge(low.to_string(), high.to_string(), Some(edge), Some(&name));
+        graph.set_edge(low.to_string(), high.to_string(), Some(edge), None);
     }
     let options = LayoutOptions {
         rankdir: RankDir::LR,
@@ -76,20 +87,19 @@ pub(super) fn arrange(sketch: &Sketch) -> Plan {
             Point::new(node.x.unwrap_or(0.0), node.y.unwrap_or(0.0))
         })
         .collect();
-    let routes = (sketch.arrows.iter().enumerate())
-        .map(|(index, arrow)| {
-            let (low, high) = (arrow.from.min(arrow.to), arrow.from.max(arrow.to));
-            let edge = graph.edge(
-                &low.to_string(),
-                &high.to_string(),
-                Some(&index.to_string()),
-            );
+    let routes = (sketch.arrows.iter())
+        .map(|arrow| {
+            let (low, high) = ends(arrow);
+            let edge = graph.edge(&low.to_string(), &high.to_string(), None);
             let edge = edge.expect("the layout keeps every edge");
-            let label = Point::new(edge.x.unwrap_or(0.0), edge.y.unwrap_or(0.0));
+            let shift = lanes[&(low, high)].shift(arrow);
+            let aside = shift.clamp(-ASIDE, ASIDE);
+            let shift = Point::new(0.0, shift);
+            let label = Point::new(edge.x.unwrap_or(0.0), edge.y.unwrap_or(0.0)) + shift;
             // The first and the last point lie on the boxes, not the circles.
             let inner = edge.points.len().saturating_sub(2);
             let mut through: Vec<Point> = (edge.points.iter().skip(1).take(inner))
-                .map(|point| Point::new(point.x, point.y))
+                .map(|point| Point::new(point.x, point.y) + shift)
                 .collect();
             if through.is_empty() {
                 through.push(label);
@@ -97,8 +107,54 @@ pub(super) fn arrange(sketch: &Sketch) -> Plan {
             if arrow.from > arrow.to {
                 through.reverse();
             }
-            Route { through, label }
+            Route {
+                through,
+                label,
+                aside,
+            }
         })
         .collect();
     Plan { centres, routes }
+}
+
+/// The room for what runs between two states: one arrow, or one there and one
+/// back.
+#[derive(Default)]
+struct Lane {
+    width: f64,
+    height: f64,
+    arrows: usize,
+}
+
+impl Lane {
+    /// How far below the middle of the lane the arrow runs: the way there below
+    /// the way back.
+    fn shift(&self, arrow: &Arrow) -> f64 {
+        let room = (self.height - arrow.label.height()) / 2.0;
+        match (self.arrows, arrow.from < arrow.to) {
+            (1, _) => 0.0,
+            (_, true) => room,
+            (_, false) => -room,
+        }
+    }
+}
+
+/// The ends of an arrow, the one that comes first in the order first.
+fn ends(arrow: &Arrow) -> (usize, usize) {
+    (arrow.from.min(arrow.to), arrow.from.max(arrow.to))
+}
+
+/// The lanes by their ends.
+fn lanes(sketch: &Sketch) -> BTreeMap<(usize, usize), Lane> {
+    let mut lanes: BTreeMap<(usize, usize), Lane> = BTreeMap::new();
+    for arrow in &sketch.arrows {
+        let lane = lanes.entry(ends(arrow)).or_default();
+        if lane.arrows > 0 {
+            lane.height += BETWEEN;
+        }
+        lane.width = lane.width.max(arrow.label.width);
+        lane.height += arrow.label.height();
+        lane.arrows += 1;
+    }
+    lanes
 }

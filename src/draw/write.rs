@@ -127,6 +127,7 @@ fn lines<'a>(sketch: &'a Sketch, plan: &Plan) -> Vec<Line<'a>> {
                 plan.centres[arrow.from],
                 &route.through,
                 plan.centres[arrow.to],
+                route.aside,
             ),
             from: arrow.from,
             to: arrow.to,
