@@ -154,7 +154,9 @@ pub fn measure(mut command: Command, limit: Duration) -> std::io::Result<Outcome
     drop(ended);
     let stopped = watchdog.join().unwrap_or(false);
     let text = |reader: Option<std::thread::JoinHandle<String>>| {
-        reader.and_then(|reader| reader.join().ok()).unwrap_or_default()
+        reader
+            .and_then(|reader| reader.join().ok())
+            .unwrap_or_default()
     };
     let (output, errors) = (text(output), text(errors));
     Ok(if stopped {

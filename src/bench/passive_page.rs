@@ -66,7 +66,9 @@ pub fn markdown(rows: &[Row], command: &str, limit: Duration, machine: &str) -> 
         limit.as_secs()
     );
     let _ = writeln!(page, "Made by `{command}` ({machine}).\n");
-    page.push_str("| sample | states | memrep, s | dfa-identify, s | ratio |\n|---|---|---|---|---|\n");
+    page.push_str(
+        "| sample | states | memrep, s | dfa-identify, s | ratio |\n|---|---|---|---|---|\n",
+    );
     for row in rows {
         let times = row.times();
         let states = row.states();
@@ -86,7 +88,11 @@ pub fn markdown(rows: &[Row], command: &str, limit: Duration, machine: &str) -> 
             (Some(ours), Some(rival)) => format!("{:.3}", ours.as_secs_f64() / rival.as_secs_f64()),
             _ => "–".to_owned(),
         };
-        let _ = writeln!(page, "| {} | {states} | {ours} | {theirs} | {ratio} |", row.sample);
+        let _ = writeln!(
+            page,
+            "| {} | {states} | {ours} | {theirs} | {ratio} |",
+            row.sample
+        );
     }
     page
 }

@@ -7,9 +7,9 @@ use crate::page::script;
 
 /// An answer on a card.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Card {
+pub(crate) struct Card {
     /// The number of its question.
-    pub number: String,
+    pub(crate) number: String,
     words: Vec<String>,
     said: String,
 }
@@ -23,7 +23,7 @@ const READ: &str = r#"
 "#;
 
 /// The cards on the page.
-pub async fn cards(client: &Client) -> Vec<Card> {
+pub(crate) async fn cards(client: &Client) -> Vec<Card> {
     serde_json::from_value(script(client, READ).await).unwrap()
 }
 
@@ -33,7 +33,7 @@ pub async fn cards(client: &Client) -> Vec<Card> {
 /// By the definition alone: the answers give weak and strict steps from worse to
 /// better words and labels; they fail if a strict step lies on a cycle, or if an
 /// accepted word leads to a rejected one.
-pub fn can_be_true(cards: &[Card]) -> bool {
+pub(crate) fn can_be_true(cards: &[Card]) -> bool {
     let mut words: Vec<&str> = vec![""];
     words.extend(cards.iter().flat_map(|c| &c.words).map(String::as_str));
     words.sort_unstable();

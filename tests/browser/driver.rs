@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 /// How long anything may take that is waited for: far more than it needs, since
 /// the machine may be busy with other tests.
-pub const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// How often a condition is looked at again.
 const PERIOD: Duration = Duration::from_millis(15);
@@ -36,19 +36,19 @@ const BROWSERS: [&str; 4] = [
 
 /// How a browser differs from the usual one.
 #[derive(Clone, Copy, Default)]
-pub struct Wishes {
+pub(crate) struct Wishes {
     /// No page may run a script.
-    pub without_script: bool,
+    pub(crate) without_script: bool,
     /// Pages are shown in their dark colours.
-    pub dark: bool,
+    pub(crate) dark: bool,
     /// The width and height of a page in pixels, if they matter.
-    pub size: Option<(u32, u32)>,
+    pub(crate) size: Option<(u32, u32)>,
 }
 
 /// A running browser.
-pub struct Browser {
+pub(crate) struct Browser {
     /// What commands it.
-    pub client: Client,
+    pub(crate) client: Client,
     folder: TempDir,
     driver: Driver,
 }
@@ -66,7 +66,7 @@ impl Drop for Driver {
 
 impl Browser {
     /// Starts one.
-    pub async fn start(wishes: Wishes) -> Self {
+    pub(crate) async fn start(wishes: Wishes) -> Self {
         let (driver, address) = start_driver();
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("downloads")).unwrap();
@@ -85,7 +85,7 @@ impl Browser {
 
     /// The file of this name that the page has given to the person, once it is
     /// there as a whole.
-    pub async fn downloaded(&self, suffix: &str) -> String {
+    pub(crate) async fn downloaded(&self, suffix: &str) -> String {
         let folder = self.folder.path().join("downloads");
         wait("the download", async || {
             let files = std::fs::read_dir(&folder).unwrap();
@@ -108,17 +108,17 @@ impl Browser {
 
 /// Runs `test` with a browser, which ends whatever becomes of the test: Chromium
 /// would go on after a panic.
-pub async fn with(wishes: Wishes, test: impl AsyncFnOnce(&Browser)) {
+pub(crate) async fn with(wishes: Wishes, test: impl AsyncFnOnce(&Browser)) {
     let browser = Browser::start(wishes).await;
     let outcome = {
         let mut running = pin!(test(&browser));
-        poll_fn(|context| {
-            match catch_unwind(AssertUnwindSafe(|| running.as_mut().poll(context))) {
+        poll_fn(
+            |context| match catch_unwind(AssertUnwindSafe(|| running.as_mut().poll(context))) {
                 Ok(Poll::Pending) => Poll::Pending,
                 Ok(Poll::Ready(())) => Poll::Ready(Ok(())),
                 Err(panic) => Poll::Ready(Err(panic)),
-            }
-        })
+            },
+        )
         .await
     };
     if outcome.is_err() {
@@ -133,7 +133,7 @@ pub async fn with(wishes: Wishes, test: impl AsyncFnOnce(&Browser)) {
 }
 
 /// Waits until `look` finds something.
-pub async fn wait<T>(what: &str, mut look: impl AsyncFnMut() -> Option<T>) -> T {
+pub(crate) async fn wait<T>(what: &str, mut look: impl AsyncFnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
         if let Some(found) = look().await {
@@ -159,8 +159,9 @@ fn start_driver() -> (Driver, String) {
         .by_ref()
         .map_while(Result::ok)
         .find_map(|line| {
+            // An earlier line repeats the 0 of the command line.
             let port = line.trim_end_matches('.').rsplit_once("on port ")?.1;
-            port.parse::<u16>().ok()
+            port.parse::<u16>().ok().filter(|port| *port != 0)
         })
         .unwrap_or_else(|| panic!("chromedriver did not say its port; {REMEDY}"));
     // A full pipe would stop it.
@@ -182,6 +183,7 @@ fn capabilities(folder: &Path, wishes: Wishes) -> Capabilities {
         "--disable-sync",
         "--no-first-run",
         "--hide-scrollbars",
+        "--force-prefers-reduced-motion",
         "--force-color-profile=srgb",
     ]
     .map(str::to_owned)

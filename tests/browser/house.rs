@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use tempfile::TempDir;
 
 /// A running server with its database.
-pub struct House {
+pub(crate) struct House {
     folder: TempDir,
     server: Server,
 }
@@ -19,19 +19,19 @@ struct Server {
 
 impl House {
     /// On a fresh database.
-    pub fn build() -> Self {
+    pub(crate) fn build() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let server = Server::start(&database(folder.path()));
         Self { folder, server }
     }
 
     /// The address of the page at `path`, which begins with a slash.
-    pub fn at(&self, path: &str) -> String {
+    pub(crate) fn at(&self, path: &str) -> String {
         format!("{}{path}", self.server.address)
     }
 
     /// Kills the server without a warning and starts another on its database.
-    pub fn strike(&mut self) {
+    pub(crate) fn strike(&mut self) {
         self.server.kill();
         self.server = Server::start(&database(self.folder.path()));
     }

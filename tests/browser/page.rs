@@ -10,13 +10,13 @@ use crate::driver::wait;
 /// What is on the page; read in one piece, so that no half of it belongs to the
 /// page before.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Page {
+pub(crate) struct Page {
     /// Which kind of page: `comparison`, `membership`, `equivalence`, `done`…
-    pub kind: String,
+    pub(crate) kind: String,
     /// The number of the question that it asks.
-    pub question: Option<String>,
+    pub(crate) question: Option<String>,
     /// The words on show, their symbols with spaces between.
-    pub words: Vec<String>,
+    pub(crate) words: Vec<String>,
     /// The rule on show, in the form that the page's script reads.
     rule: Option<String>,
     /// The time at which the browser began to load it, different for each page.
@@ -49,12 +49,12 @@ struct Rule {
 
 impl Page {
     /// The page that is shown now, once it is there.
-    pub async fn now(client: &Client) -> Self {
+    pub(crate) async fn now(client: &Client) -> Self {
         Self::when(client, |_| true).await
     }
 
     /// The page that comes after this one.
-    pub async fn next(&self, client: &Client) -> Self {
+    pub(crate) async fn next(&self, client: &Client) -> Self {
         Self::when(client, |page| page.born > self.born).await
     }
 
@@ -69,31 +69,31 @@ impl Page {
     }
 
     /// The word at this place on the page.
-    pub fn word(&self, place: usize, alphabet: &Alphabet) -> Word {
+    pub(crate) fn word(&self, place: usize, alphabet: &Alphabet) -> Word {
         alphabet.word(self.words[place].split_whitespace()).unwrap()
     }
 
     /// The rule on show.
-    pub fn rule(&self, alphabet: &Alphabet) -> Dfa {
+    pub(crate) fn rule(&self, alphabet: &Alphabet) -> Dfa {
         let rule: Rule = serde_json::from_str(self.rule.as_ref().unwrap()).unwrap();
         Dfa::new(alphabet.clone(), rule.start, rule.accepting, &rule.delta).unwrap()
     }
 
-    /// What it asks: to compare with what was asked before.
-    pub fn asks(&self) -> (&str, Option<&str>, &[String]) {
-        (&self.kind, self.question.as_deref(), &self.words)
+    /// What it asks, whatever the number under which it does.
+    pub(crate) fn asks(&self) -> (&str, &[String]) {
+        (&self.kind, &self.words)
     }
 
     /// Clicks what the selector finds first, and waits for the page to which
     /// that leads.
-    pub async fn click(&self, client: &Client, selector: &str) -> Self {
+    pub(crate) async fn click(&self, client: &Client, selector: &str) -> Self {
         press(client, selector).await;
         self.next(client).await
     }
 }
 
 /// Clicks what the selector finds first.
-pub async fn press(client: &Client, selector: &str) {
+pub(crate) async fn press(client: &Client, selector: &str) {
     let element = client.find(Locator::Css(selector)).await;
     let element = element.unwrap_or_else(|e| panic!("{selector}: {e}"));
     let clicked = element.click().await;
@@ -101,7 +101,7 @@ pub async fn press(client: &Client, selector: &str) {
 }
 
 /// Empties a field and types `text` into it.
-pub async fn fill(client: &Client, selector: &str, text: &str) {
+pub(crate) async fn fill(client: &Client, selector: &str, text: &str) {
     let field = client.find(Locator::Css(selector)).await;
     let field = field.unwrap_or_else(|e| panic!("{selector}: {e}"));
     field.clear().await.unwrap();
@@ -109,7 +109,7 @@ pub async fn fill(client: &Client, selector: &str, text: &str) {
 }
 
 /// The text that a person reads in what the selector finds.
-pub async fn texts(client: &Client, selector: &str) -> Vec<String> {
+pub(crate) async fn texts(client: &Client, selector: &str) -> Vec<String> {
     let mut texts = Vec::new();
     for element in client.find_all(Locator::Css(selector)).await.unwrap() {
         texts.push(element.text().await.unwrap());
@@ -118,12 +118,12 @@ pub async fn texts(client: &Client, selector: &str) -> Vec<String> {
 }
 
 /// What a field holds now.
-pub async fn typed(client: &Client, selector: &str) -> String {
+pub(crate) async fn typed(client: &Client, selector: &str) -> String {
     let field = client.find(Locator::Css(selector)).await.unwrap();
     field.prop("value").await.unwrap().unwrap_or_default()
 }
 
 /// The value of a script that takes no argument.
-pub async fn script(client: &Client, body: &str) -> Value {
+pub(crate) async fn script(client: &Client, body: &str) -> Value {
     client.execute(body, Vec::new()).await.unwrap()
 }

@@ -4,47 +4,75 @@ use std::path::PathBuf;
 
 use fantoccini::Client;
 
-use crate::driver::{Wishes, with};
-use crate::house::House;
-use crate::page::script;
-use crate::teaching::{Person, begin};
+use crate::page::{Page, script};
+use crate::teaching::Person;
 
 /// What a picture in a README may weigh, in bytes.
 const HEAVIEST: usize = 200_000;
 
-/// Writes the part of the page that is seen now as `NAME.png`.
-async fn take(client: &Client, folder: Option<&PathBuf>, name: &str) {
-    // A focus ring is no part of a picture.
-    script(client, "document.activeElement.blur(); scrollTo(0, 0)").await;
-    let picture = client.screenshot().await.unwrap();
-    assert!(picture.len() < HEAVIEST, "{name}: {}", picture.len());
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).unwrap();
-        std::fs::write(folder.join(format!("{name}.png")), picture).unwrap();
-    }
+/// The width and height of a picture in pixels.
+const SIZE: (u32, u32) = (1280, 800);
+
+/// The pictures that are still to be taken, by the page that they show.
+pub(crate) struct Album {
+    folder: Option<PathBuf>,
+    missing: Vec<&'static str>,
 }
 
-/// Teaches the robot's task as far as each picture needs.
-#[tokio::test]
-async fn pictures_of_the_three_pages() {
-    let folder = std::env::var_os("MEMREP_SCREENSHOTS").map(PathBuf::from);
-    with(Wishes::default(), async |browser| {
-        let client = &browser.client;
-        // A page of 1280 by 800 pixels, whatever frame the window has.
-        client.set_window_size(1280, 800).await.unwrap();
-        let house = House::build();
-        let mut person = Person::thinking_of("robot");
-        let page = begin(browser, &house.at("/"), "robot").await;
-        let page = person.answer_until(client, page, "comparison").await;
-        take(client, folder.as_ref(), "question").await;
-        let mut page = person.answer_until(client, page, "equivalence").await;
-        // The last rule, which is right, makes the best picture.
-        while page.kind != "equivalence" || person.objection(&page).is_some() {
-            page = person.answer(client, &page).await;
+impl Album {
+    /// Takes none.
+    pub(crate) fn none() -> Self {
+        Self {
+            folder: None,
+            missing: Vec::new(),
         }
-        take(client, folder.as_ref(), "equivalence").await;
-        person.answer_until(client, page, "done").await;
-        take(client, folder.as_ref(), "result").await;
-    })
-    .await;
+    }
+
+    /// Takes all, if they are wished for; the page then gets their size.
+    pub(crate) async fn wished(client: &Client) -> Self {
+        let Some(folder) = std::env::var_os("MEMREP_SCREENSHOTS").map(PathBuf::from) else {
+            return Self::none();
+        };
+        std::fs::create_dir_all(&folder).unwrap();
+        // A window is larger than its page by a frame that nobody knows before.
+        let (width, height) = SIZE;
+        client.set_window_size(width, height).await.unwrap();
+        let frame = script(client, "return [innerWidth, innerHeight];").await;
+        let frame: (u32, u32) = serde_json::from_value(frame).unwrap();
+        client
+            .set_window_size(2 * width - frame.0, 2 * height - frame.1)
+            .await
+            .unwrap();
+        Self {
+            folder: Some(folder),
+            missing: vec!["question", "equivalence", "result"],
+        }
+    }
+
+    /// Takes a picture of the page, if it is one of those that are missing.
+    pub(crate) async fn see(&mut self, client: &Client, page: &Page, person: &mut Person) {
+        let Some(folder) = &self.folder else { return };
+        let long = |word: &String| word.split_whitespace().count() > 1;
+        let name = match page.kind.as_str() {
+            "comparison" if page.words.iter().all(long) => "question",
+            // The last rule, which is right, makes the best picture.
+            "equivalence" if person.objection(page).is_none() => "equivalence",
+            "done" => "result",
+            _ => return,
+        };
+        let Some(place) = self.missing.iter().position(|missing| *missing == name) else {
+            return;
+        };
+        self.missing.remove(place);
+        // A focus ring is no part of a picture.
+        script(client, "document.activeElement.blur(); scrollTo(0, 0)").await;
+        let picture = client.screenshot().await.unwrap();
+        assert!(picture.len() < HEAVIEST, "{name}: {}", picture.len());
+        std::fs::write(folder.join(format!("{name}.png")), picture).unwrap();
+    }
+
+    /// All that were wished for are there.
+    pub(crate) fn is_complete(&self) {
+        assert!(self.missing.is_empty(), "no picture of {:?}", self.missing);
+    }
 }

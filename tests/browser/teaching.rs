@@ -10,17 +10,17 @@ use crate::page::{Page, fill, press};
 
 /// More questions than any of these tasks needs: a test ends even if the
 /// learner does not.
-pub const MANY: usize = 150;
+pub(crate) const MANY: usize = 150;
 
 /// Someone who knows the target.
-pub struct Person {
+pub(crate) struct Person {
     target: Dfa,
     teacher: ScriptedTeacher,
 }
 
 impl Person {
     /// Someone who has the target of this name in mind.
-    pub fn thinking_of(name: &str) -> Self {
+    pub(crate) fn thinking_of(name: &str) -> Self {
         let target = Target::named(name).unwrap();
         Self {
             target: target.dfa().clone(),
@@ -29,17 +29,17 @@ impl Person {
     }
 
     /// The symbols.
-    pub fn alphabet(&self) -> &Alphabet {
+    pub(crate) fn alphabet(&self) -> &Alphabet {
         self.target.alphabet()
     }
 
     /// Whether the word is in the target.
-    pub fn accepts(&self, word: &Word) -> bool {
+    pub(crate) fn accepts(&self, word: &Word) -> bool {
         self.target.accepts(word)
     }
 
     /// The value of the button that answers the page's comparison or judgement.
-    pub fn opinion(&mut self, page: &Page) -> &'static str {
+    pub(crate) fn opinion(&mut self, page: &Page) -> &'static str {
         let first = page.word(0, self.alphabet());
         if page.kind == "membership" {
             assert_eq!(page.words.len(), 1);
@@ -61,7 +61,7 @@ impl Person {
 
     /// A word that the rule on show treats wrongly, as one types it, and whether
     /// it should be accepted.
-    pub fn objection(&mut self, page: &Page) -> Option<(String, bool)> {
+    pub(crate) fn objection(&mut self, page: &Page) -> Option<(String, bool)> {
         let rule = page.rule(self.alphabet());
         let (word, label) = self.teacher.counterexample(&rule)?;
         let names: Vec<&str> = self.alphabet().spell(&word).collect();
@@ -69,7 +69,7 @@ impl Person {
     }
 
     /// Answers what the page asks with the mouse.
-    pub async fn answer(&mut self, client: &Client, page: &Page) -> Page {
+    pub(crate) async fn answer(&mut self, client: &Client, page: &Page) -> Page {
         if page.kind == "equivalence" {
             let Some((word, label)) = self.objection(page) else {
                 return page.click(client, "button[value=correct]").await;
@@ -84,7 +84,12 @@ impl Person {
     }
 
     /// Answers until the page is of this kind.
-    pub async fn answer_until(&mut self, client: &Client, mut page: Page, kind: &str) -> Page {
+    pub(crate) async fn answer_until(
+        &mut self,
+        client: &Client,
+        mut page: Page,
+        kind: &str,
+    ) -> Page {
         for _ in 0..MANY {
             if page.kind == kind {
                 return page;
@@ -95,7 +100,7 @@ impl Person {
     }
 
     /// Takes the automaton home from the last page; it must be the target.
-    pub async fn take_home(&self, browser: &Browser) {
+    pub(crate) async fn take_home(&self, browser: &Browser) {
         press(&browser.client, "#download-json").await;
         let text = browser.downloaded(".json").await;
         let learned = automata::format::json::read(&text).unwrap().dfa;
@@ -107,7 +112,7 @@ impl Person {
 }
 
 /// Opens the start page and begins the ready task of this name.
-pub async fn begin(browser: &Browser, start: &str, task: &str) -> Page {
+pub(crate) async fn begin(browser: &Browser, start: &str, task: &str) -> Page {
     browser.client.goto(start).await.unwrap();
     let page = Page::now(&browser.client).await;
     assert_eq!(page.kind, "start");

@@ -101,7 +101,9 @@ fn draw(args: &Args, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
             let states = usize::from(states);
             let most = passive::most_words(states);
             if usize::from(words) > most {
-                bail!("there are only {most} words for a target of {states} states: give fewer than {words} by `--words`");
+                bail!(
+                    "there are only {most} words for a target of {states} states: give fewer than {words} by `--words`"
+                );
             }
             let (_, sample) = passive::random_sample(states, words.into(), args.seed);
             let path = folder.join(format!("n{states}_m{words}_s{}.abb", args.seed));
