@@ -208,8 +208,9 @@ fn an_erring_teacher() {
     let folder = folder();
     let mut dropped = 0;
     for seed in 0..5 {
-        let arguments =
-            format!("learn --target tomita:6 --error-rate 0.1 --seed {seed} --format json");
+        let arguments = format!(
+            "learn --target tomita:6 --error-rate 0.1 --max-states 6 --seed {seed} --format json"
+        );
         let outcome = memrep(&folder, &arguments);
         assert_eq!(outcome.status, Some(0), "{}", outcome.stdout);
         dropped += summary(&outcome)["dropped"].as_u64().unwrap();

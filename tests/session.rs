@@ -25,16 +25,16 @@ impl Kept {
 
     fn think(&mut self) {
         while let Some(event) = self.session.think() {
-            self.append(event);
+            self.append(&event);
         }
     }
 
-    fn append(&mut self, event: Event) {
-        self.session.apply(&event).unwrap();
+    fn append(&mut self, event: &Event) {
+        self.session.apply(event).unwrap();
         // What is kept is the text.
-        let text = serde_json::to_string(&event).unwrap();
+        let text = serde_json::to_string(event).unwrap();
         self.log.push(serde_json::from_str(&text).unwrap());
-        assert_eq!(self.log.last(), Some(&event), "{text}");
+        assert_eq!(self.log.last(), Some(event), "{text}");
     }
 
     fn act(
@@ -42,7 +42,7 @@ impl Kept {
         decide: impl Fn(&Session) -> Result<Decision, Refusal>,
     ) -> Result<(), Refusal> {
         if let Decision::Append(event) = decide(&self.session)? {
-            self.append(event);
+            self.append(&event);
             self.think();
         }
         Ok(())
@@ -211,7 +211,7 @@ fn too_small_a_bound_is_a_conflict_that_a_larger_one_resolves() {
 
 #[test]
 fn refusals_say_what_to_do() {
-    let mut kept = Kept::begin(ready("tomita:5").unwrap(), Setup::default());
+    let mut kept = Kept::begin(ready("robot").unwrap(), Setup::default());
     let session = &kept.session;
     let (open, question) = kept.open().unwrap();
     let wrong = Reply::Correct;
@@ -239,7 +239,7 @@ fn refusals_say_what_to_do() {
     }
     let unfit = session.answer(open, &wrong).unwrap_err().to_string();
     assert!(unfit.contains("does not fit question 1"), "{unfit}");
-    let reply = truthfully(&mut teacher_of("tomita:5"), &question);
+    let reply = truthfully(&mut teacher_of("robot"), &question);
     kept.act(|session| session.answer(open, &reply)).unwrap();
     let closed = kept
         .session
@@ -391,7 +391,8 @@ proptest! {
 
         let mut cut = Session::replay(&kept.log[..kept.log.len() - 1]).unwrap();
         prop_assert_eq!(cut.position(), &Position::Thinking);
-        prop_assert_eq!(cut.think().as_ref(), kept.log.last());
+        let thought = cut.think();
+        prop_assert_eq!(thought.as_ref(), kept.log.last());
     }
 
     /// What is asked depends on the answers that stand alone: a log in which
@@ -418,11 +419,12 @@ proptest! {
         let mut clean = Session::replay(&clean).unwrap();
         let next = clean.think().unwrap();
         clean.apply(&next).unwrap();
-        match (clean.position(), kept.session.position()) {
-            (Position::Conflict(a), Position::Conflict(b)) => {
-                prop_assert_eq!(a.cause, b.cause);
-            }
-            _ => prop_assert_eq!(shown(&clean), shown(&kept.session)),
+        if let (Position::Conflict(a), Position::Conflict(b)) =
+            (clean.position(), kept.session.position())
+        {
+            prop_assert_eq!(a.cause, b.cause);
+        } else {
+            prop_assert_eq!(shown(&clean), shown(&kept.session));
         }
     }
 

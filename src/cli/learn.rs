@@ -1,7 +1,7 @@
 //! `memrep learn`: teaches a target by a scripted teacher, and tells what it
 //! took.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -47,10 +47,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "T")]
     target: String,
     /// The cost of a membership query, positive.
-    #[arg(long, value_name = "A", default_value = "4", value_parser = finite_cost)]
+    #[arg(long, value_name = "A", default_value = "4", allow_negative_numbers = true, value_parser = finite_cost)]
     membership_cost: f64,
     /// The cost of a comparison, positive; `inf`: never ask one.
-    #[arg(long, value_name = "B", default_value = "1", value_parser = cost)]
+    #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = cost)]
     comparison_cost: f64,
     /// How questions are chosen.
     #[arg(long, value_name = "S", default_value = "thesis")]
@@ -62,7 +62,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "KIND", default_value = "shortest")]
     counterexample: Counterexamples,
     /// The share of membership answers and comparisons that are wrong.
-    #[arg(long, value_name = "RATE", default_value = "0", value_parser = rate)]
+    #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = rate)]
     error_rate: f64,
     /// Decides every random choice of learner and teacher.
     #[arg(long, value_name = "N", default_value = "0")]
@@ -70,7 +70,7 @@ pub(crate) struct Args {
     /// Give up after so many questions.
     #[arg(long, value_name = "N", default_value = "1000")]
     max_questions: u32,
-    /// The largest automaton to consider, in states; 64 if not given, and 10
+    /// The largest automaton to consider, in states; 64 if not given, and 8
     /// where the teacher errs: wrong answers look like further states, and a
     /// bound not far above the target's size finds them out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -162,7 +162,7 @@ impl ValueEnum for Counterexamples {
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let target = target(args)?;
     let alphabet = target.dfa().alphabet().clone();
-    let usual_bound = if args.error_rate > 0.0 { 10 } else { 64 };
+    let usual_bound = if args.error_rate > 0.0 { 8 } else { 64 };
     let settings = Settings {
         engine: EngineChoice::Auto,
         max_states: usize::from(args.max_states.unwrap_or(usual_bound)),
@@ -240,7 +240,7 @@ fn target(args: &Args) -> anyhow::Result<Target> {
     })
 }
 
-fn save(path: &PathBuf, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Result<()> {
+fn save(path: &Path, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Result<()> {
     let document = Document {
         dfa: learned.clone(),
         name: Some(target.name().to_owned()),

@@ -3,6 +3,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use super::ports::Ports;
+
 /// The radius of a circle, in pixels.
 pub(super) const RADIUS: f64 = 22.0;
 
@@ -34,6 +36,15 @@ impl Point {
         self.x.hypot(self.y)
     }
 
+    /// This direction with length 1, or nothing where it has none.
+    pub(super) fn direction(self) -> Self {
+        if self.length() < 1e-9 {
+            Self::new(0.0, 0.0)
+        } else {
+            self.unit()
+        }
+    }
+
     /// This direction with length 1; to the right where it has none.
     fn unit(self) -> Self {
         let length = self.length();
@@ -48,9 +59,18 @@ impl Point {
         self.y.atan2(self.x)
     }
 
-    /// The direction at this angle, clockwise from the right.
+    /// The angle of this direction, in degrees clockwise from the right.
+    pub(super) fn degrees(self) -> f64 {
+        self.angle().to_degrees()
+    }
+
     fn at_angle(angle: f64) -> Self {
         Self::new(angle.cos(), angle.sin())
+    }
+
+    /// The direction at this angle, in degrees clockwise from the right.
+    fn at_degrees(angle: f64) -> Self {
+        Self::at_angle(angle.to_radians())
     }
 }
 
@@ -102,24 +122,22 @@ pub(super) struct Curve {
 
 impl Curve {
     /// The arrow from the circle around `from` through `through` to the circle
-    /// around `to`.
-    pub(super) fn between(from: Point, through: &[Point], to: Point) -> Self {
-        let mut stops = vec![from];
-        stops.extend_from_slice(through);
-        stops.push(to);
-        let last = stops.len() - 1;
-        // Inner directions are parallel to the line between the neighbours.
-        let mut directions: Vec<Point> = (0..=last)
-            .map(|i| (stops[(i + 1).min(last)] - stops[i.saturating_sub(1)]).unit())
-            .collect();
-        if last > 1 {
-            directions[0] = swing(stops[1] - from, directions[1]);
-            directions[last] = swing(to - stops[last - 1], directions[last - 1]);
-        }
-        let heading = directions[last];
+    /// around `to`, touching them at `ports`.
+    pub(super) fn between(from: Point, through: &[Point], to: Point, ports: Ports) -> Self {
+        let leave = Point::at_degrees(ports.leave);
+        let heading = Point::at_degrees(ports.enter) * -1.0;
         let tip = to - heading * (RADIUS + GAP);
-        stops[0] = from + directions[0] * RADIUS;
-        stops[last] = tip - heading * (HEAD - 1.0);
+        let mut stops = vec![from + leave * RADIUS];
+        stops.extend_from_slice(through);
+        stops.push(tip - heading * (HEAD - 1.0));
+        let last = stops.len() - 1;
+        // Inner directions halve the angle between what comes and what goes.
+        let mut directions = vec![leave];
+        directions.extend(stops.windows(3).map(|stop| {
+            let [coming, going] = [stop[1] - stop[0], stop[2] - stop[1]];
+            (coming.direction() + going.direction()).unit()
+        }));
+        directions.push(heading);
         let pieces = (1..=last)
             .map(|i| {
                 let third = (stops[i] - stops[i - 1]).length() / 3.0;
@@ -140,8 +158,8 @@ impl Curve {
 
     /// The loop on top of the circle around `centre`.
     pub(super) fn looping(centre: Point) -> Self {
-        let leave = Point::at_angle((-118.0_f64).to_radians());
-        let enter = Point::at_angle((-62.0_f64).to_radians());
+        let leave = Point::at_degrees(-118.0);
+        let enter = Point::at_degrees(-62.0);
         let reach = LOOP_HEIGHT * 1.32;
         let lean = |side: f64| Point::new(side * 0.42, -1.0).unit();
         let tip = centre + enter * (RADIUS + GAP);
@@ -182,7 +200,7 @@ impl Curve {
 /// The direction at the outer end of `chord` that makes, with `inner` at its
 /// other end, a piece of a circle: as far from the chord on the other side.
 /// Bounded, so that an arrow never leaves its circle backwards.
-fn swing(chord: Point, inner: Point) -> Point {
+pub(super) fn swing(chord: Point, inner: Point) -> Point {
     use std::f64::consts::{FRAC_PI_4, PI, TAU};
     let mut turn = chord.angle() - inner.angle();
     if turn > PI {

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::curve::{Curve, HEAD, LOOP_HEIGHT, Point, RADIUS};
 use super::layout::{PADDING, Plan};
+use super::ports::ports;
 use super::sketch::Sketch;
 use super::text::{FONT_SIZE, LINE_HEIGHT, Label, escape, number, width};
 
@@ -89,9 +90,9 @@ pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
             &mut out,
             format_args!("<g class=\"{class}\" data-state=\"{}\">", state.number),
         );
-        circle(&mut out, centre, RADIUS);
+        ring(&mut out, centre, RADIUS);
         if state.accepting {
-            circle(&mut out, centre, RADIUS - RING);
+            ring(&mut out, centre, RADIUS - RING);
         }
         text(&mut out, centre, "middle", &state.number.to_string());
         out.push_str("</g>\n");
@@ -121,12 +122,14 @@ struct Frame {
 /// All arrows with their labels, loops after the others.
 fn lines<'a>(sketch: &'a Sketch, plan: &Plan) -> Vec<Line<'a>> {
     let mut lines = Vec::new();
-    for (arrow, route) in sketch.arrows.iter().zip(&plan.routes) {
+    let ports = ports(sketch, plan);
+    for ((arrow, route), ports) in sketch.arrows.iter().zip(&plan.routes).zip(ports) {
         lines.push(Line {
             curve: Curve::between(
                 plan.centres[arrow.from],
                 &route.through,
                 plan.centres[arrow.to],
+                ports,
             ),
             from: arrow.from,
             to: arrow.to,
@@ -296,7 +299,7 @@ fn arrow(out: &mut String, curve: &Curve) {
 }
 
 /// A ring.
-fn circle(out: &mut String, centre: Point, radius: f64) {
+fn ring(out: &mut String, centre: Point, radius: f64) {
     out.push_str("<circle fill=\"none\" cx=\"");
     number(out, centre.x);
     out.push_str("\" cy=\"");

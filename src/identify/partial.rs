@@ -400,9 +400,8 @@ mod tests {
         // Nodes and edges that are out of use keep what they last held.
         let waiting: Vec<Vec<Node>> = (partial.head.iter())
             .map(|&head| {
-                let next = |&node: &Node| Some(partial.behind[node as usize]);
-                std::iter::successors(Some(head), next)
-                    .take_while(|&node| node != NONE)
+                let some = |node: Node| Some(node).filter(|&node| node != NONE);
+                std::iter::successors(some(head), |&node| some(partial.behind[node as usize]))
                     .collect()
             })
             .collect();

@@ -137,7 +137,7 @@ pub async fn run(
         if stopped.await.is_ok() {
             tokio::time::sleep(FAREWELL).await;
         } else {
-            std::future::pending().await
+            std::future::pending::<()>().await;
         }
     };
     tokio::select! {
@@ -151,5 +151,5 @@ pub async fn run(
 
 /// A response whose body is text of this type.
 fn typed(kind: &'static str, body: String) -> Response {
-    axum::response::IntoResponse::into_response(([(axum::http::header::CONTENT_TYPE, kind)], body))
+    ([(CONTENT_TYPE, kind)], body).into_response()
 }

@@ -72,6 +72,27 @@ struct OwnForm {
     examples: String,
 }
 
+/// What is wrong with a form, and at which of its fields that is to be said.
+#[derive(Clone, Default)]
+struct Faults(Option<(&'static str, String)>);
+
+impl Faults {
+    /// The error at the field that it speaks of, or else at the first.
+    fn of(error: &WebError, fields: &[&'static str]) -> Self {
+        let path = error.field().unwrap_or_default();
+        let named = path.split(['[', '.']).next().unwrap_or_default();
+        let field = fields.iter().find(|field| **field == named);
+        let field = field.or(fields.first()).copied().unwrap_or_default();
+        Self(Some((field, error.message())))
+    }
+
+    /// What is to be said at this field.
+    fn at(&self, field: &str) -> Option<&str> {
+        let (faulty, message) = self.0.as_ref()?;
+        (*faulty == field).then_some(message)
+    }
+}
+
 #[derive(Template)]
 #[template(path = "start.html")]
 struct StartPage {
@@ -80,14 +101,10 @@ struct StartPage {
     tasks: Vec<TaskCard>,
     sessions: Vec<SessionCard>,
     own: OwnForm,
-    fault: Option<String>,
+    faults: Faults,
 }
 
-async fn start_page(
-    app: &AppState,
-    own: OwnForm,
-    fault: Option<String>,
-) -> Result<Response, WebError> {
+async fn start_page(app: &AppState, own: OwnForm, faults: Faults) -> Result<Response, WebError> {
     let sessions = app.teaching.list(20).await?;
     Ok(render(&StartPage {
         shell: Shell::plain("Teach a rule"),
@@ -95,7 +112,7 @@ async fn start_page(
         tasks: offered().map(task_card).collect(),
         sessions: sessions.iter().filter_map(session_card).collect(),
         own,
-        fault,
+        faults,
     }))
 }
 
@@ -133,7 +150,7 @@ fn session_card(listed: &Listed) -> Option<SessionCard> {
 }
 
 async fn start(State(app): State<AppState>) -> Result<Response, PageError> {
-    Ok(start_page(&app, OwnForm::default(), None).await?)
+    Ok(start_page(&app, OwnForm::default(), Faults::default()).await?)
 }
 
 async fn begin(State(app): State<AppState>, fields: Fields) -> Result<Response, PageError> {
@@ -149,9 +166,10 @@ async fn begin(State(app): State<AppState>, fields: Fields) -> Result<Response, 
                     symbols: form.text("symbols").to_owned(),
                     examples: form.text("examples").to_owned(),
                 };
-                let fault = WebError::from(fault);
-                let page = start_page(&app, own, Some(fault.message())).await?;
-                return Ok((fault.status(), page).into_response());
+                let error = WebError::from(fault);
+                let faults = Faults::of(&error, &["title", "symbols", "examples"]);
+                let page = start_page(&app, own, faults).await?;
+                return Ok((error.status(), page).into_response());
             }
         }
     };
@@ -186,6 +204,7 @@ struct EquivalencePage {
     empty: String,
     typed: String,
     label: String,
+    faults: Faults,
 }
 
 #[derive(Template)]
@@ -224,6 +243,7 @@ struct DonePage {
 #[derive(Clone, Default)]
 struct Typed {
     notice: Option<String>,
+    faults: Faults,
     word: String,
     label: String,
 }
@@ -259,6 +279,7 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                         empty: task.empty.clone(),
                         typed: typed.word,
                         label: typed.label,
+                        faults: typed.faults,
                     });
                 }
             };
@@ -341,9 +362,15 @@ async fn act(
     match app.teaching.act(id, decide, |_, _| ()).await {
         Ok(()) => Ok(Redirect::to(&format!("/sessions/{id}")).into_response()),
         Err(error) if error.is_refusal() => {
-            let typed = Typed {
-                notice: Some(error.message()),
-                ..typed
+            let typed = match error.field() {
+                Some("word" | "label") => Typed {
+                    faults: Faults::of(&error, &["word", "label"]),
+                    ..typed
+                },
+                _ => Typed {
+                    notice: Some(error.message()),
+                    ..typed
+                },
             };
             let view = move |session: &Session| page(id, session, typed);
             let page = app.teaching.look(id, view).await?;
@@ -361,9 +388,9 @@ async fn answer(
     let id = session_id(&id)?;
     let form = read_form(fields)?;
     let typed = Typed {
-        notice: None,
         word: form.text("word").to_owned(),
         label: form.text("label").to_owned(),
+        ..Typed::default()
     };
     let decide = move |session: &Session| {
         let reply = form.reply(session.alphabet())?;

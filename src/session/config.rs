@@ -6,8 +6,8 @@ use serde_json::Value;
 use super::reader::{Fields, Malformed};
 use crate::learner::{Config, Strategy};
 
-/// The work that choosing one question may do, where nothing else is said:
-/// well under a second.
+/// The work that choosing one question may do, where nothing else is said: a
+/// few seconds at most.
 pub const DEFAULT_BUDGET: u64 = 2_000_000;
 
 /// The learner's configuration in a form that survives JSON, in which there is
@@ -117,6 +117,10 @@ mod cost {
         Named(String),
     }
 
+    #[expect(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde hands over references"
+    )]
     pub(super) fn serialize<S: Serializer>(cost: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         if cost.is_finite() {
             Form::Finite(*cost).serialize(serializer)

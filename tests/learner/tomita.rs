@@ -16,7 +16,7 @@ fn run(
     let bound = Settings {
         engine: EngineChoice::Auto,
         // Where the teacher errs, wrong answers look like further states.
-        max_states: if settings.error_rate > 0.0 { 10 } else { 24 },
+        max_states: if settings.error_rate > 0.0 { 6 } else { 24 },
     };
     let class = DfaClass::new(target.dfa().alphabet().clone(), bound);
     let mut learner = Learner::new(class, config, target.known().to_vec());

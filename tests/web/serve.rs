@@ -1,6 +1,5 @@
 //! The `serve` command: it starts, refuses, stops, and loses nothing when it is
 //! killed.
-#![cfg(all(feature = "server", unix))]
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;

@@ -1,5 +1,4 @@
 //! The store keeps what was appended, once, and leaves other files alone.
-#![cfg(feature = "server")]
 
 use std::path::Path;
 use std::sync::Arc;

@@ -12,34 +12,34 @@ use serde_json::Value;
 use tower::ServiceExt;
 
 /// The whole site.
-pub struct Site {
+pub(crate) struct Site {
     router: Router,
 }
 
 /// What came back.
-pub struct Reply {
-    pub status: StatusCode,
-    pub headers: HeaderMap,
-    pub text: String,
+pub(crate) struct Reply {
+    pub(crate) status: StatusCode,
+    pub(crate) headers: HeaderMap,
+    pub(crate) text: String,
 }
 
 impl Reply {
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.text).unwrap_or_else(|e| panic!("{e}: {}", self.text))
     }
 
-    pub fn header(&self, name: &str) -> &str {
+    pub(crate) fn header(&self, name: &str) -> &str {
         self.headers.get(name).map_or("", |v| v.to_str().unwrap())
     }
 
     /// Where a redirect leads.
-    pub fn location(&self) -> String {
+    pub(crate) fn location(&self) -> String {
         assert_eq!(self.status, StatusCode::SEE_OTHER, "{}", self.text);
         self.header("location").to_owned()
     }
 
     /// The value of an attribute on the page's `<main>`.
-    pub fn main(&self, attribute: &str) -> String {
+    pub(crate) fn main(&self, attribute: &str) -> String {
         let main = self
             .text
             .split("<main")
@@ -49,11 +49,7 @@ impl Reply {
     }
 
     /// The words on the page, in order.
-    #[allow(
-        dead_code,
-        reason = "not every test that includes this module looks at words"
-    )]
-    pub fn words(&self) -> Vec<String> {
+    pub(crate) fn words(&self) -> Vec<String> {
         self.text
             .split("<ol class=\"word")
             .skip(1)
@@ -71,15 +67,11 @@ fn attribute_of(text: &str, attribute: &str) -> String {
 }
 
 impl Site {
-    pub fn in_memory() -> Self {
+    pub(crate) fn in_memory() -> Self {
         Self::over(Sqlite::in_memory().unwrap())
     }
 
-    #[allow(
-        dead_code,
-        reason = "not every test that includes this module needs a file"
-    )]
-    pub fn at(path: &Path) -> Self {
+    pub(crate) fn at(path: &Path) -> Self {
         Self::over(Sqlite::open(path).unwrap())
     }
 
@@ -89,7 +81,7 @@ impl Site {
         }
     }
 
-    pub async fn send(&self, request: Request<Body>) -> Reply {
+    pub(crate) async fn send(&self, request: Request<Body>) -> Reply {
         let response = self.router.clone().oneshot(request).await.unwrap();
         let (parts, body) = response.into_parts();
         let bytes = to_bytes(body, 16 << 20).await.unwrap();
@@ -100,26 +92,18 @@ impl Site {
         }
     }
 
-    pub async fn get(&self, path: &str) -> Reply {
+    pub(crate) async fn get(&self, path: &str) -> Reply {
         self.send(Request::get(path).body(Body::empty()).unwrap())
             .await
     }
 
-    #[allow(
-        dead_code,
-        reason = "not every test that includes this module uses the API"
-    )]
-    pub async fn post(&self, path: &str, body: Value) -> Reply {
+    pub(crate) async fn post(&self, path: &str, body: Value) -> Reply {
         self.post_text(path, "application/json", body.to_string())
             .await
     }
 
     /// A form, as a browser without script sends it.
-    #[allow(
-        dead_code,
-        reason = "not every test that includes this module uses forms"
-    )]
-    pub async fn form(&self, path: &str, fields: &[(&str, &str)]) -> Reply {
+    pub(crate) async fn form(&self, path: &str, fields: &[(&str, &str)]) -> Reply {
         let encode = |text: &str| -> String {
             text.bytes()
                 .map(|b| match b {
@@ -136,7 +120,7 @@ impl Site {
             .await
     }
 
-    pub async fn post_text(&self, path: &str, kind: &str, body: impl Into<Body>) -> Reply {
+    pub(crate) async fn post_text(&self, path: &str, kind: &str, body: impl Into<Body>) -> Reply {
         let request = Request::builder()
             .method(Method::POST)
             .uri(path)

@@ -1,15 +1,12 @@
 //! The JSON API: a scripted teacher from the first question to the download,
 //! and every way to get it wrong.
-#![cfg(feature = "server")]
 
-mod site;
-
+use crate::site::{Reply, Site};
 use automata::{Alphabet, Dfa, Word};
 use axum::http::StatusCode;
 use memrep::evidence::Comparison;
 use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
 use serde_json::{Value, json};
-use site::{Reply, Site};
 
 fn word(alphabet: &Alphabet, value: &Value) -> Word {
     let names = value
@@ -159,7 +156,7 @@ fn check(reply: &Reply, status: u16, code: &str, field: &str) {
         reply.text
     );
     assert!(
-        error["message"].as_str().unwrap().len() > 20,
+        error["message"].as_str().unwrap().len() > 15,
         "{}",
         reply.text
     );
@@ -246,14 +243,10 @@ async fn sessions_that_cannot_be_are_refused() {
     );
 }
 
-#[tokio::test]
-async fn answers_that_cannot_be_are_refused() {
-    let site = Site::in_memory();
-    let session = create(&site, json!({"task": "tomita:5"})).await;
-    let answers = format!("{session}/answers");
-    let open = site.get(&format!("{session}/question")).await.json();
-    assert_eq!(open["number"], 1);
-    for (body, status, code, field) in [
+/// Answers to the first question of a session of the robot, none of which can
+/// be: the body, and the status, code and field of the error.
+fn bad_answers() -> Vec<(Value, u16, &'static str, &'static str)> {
+    vec![
         (json!(7), 422, "malformed", ""),
         (json!({"answer": "accept"}), 422, "malformed", "question"),
         (
@@ -294,13 +287,13 @@ async fn answers_that_cannot_be_are_refused() {
             "word[0]",
         ),
         (
-            json!({"question": 1, "answer": "counterexample", "word": "1", "label": true}),
+            json!({"question": 1, "answer": "counterexample", "word": "R", "label": true}),
             422,
             "malformed",
             "word",
         ),
         (
-            json!({"question": 1, "answer": "counterexample", "word": ["1"]}),
+            json!({"question": 1, "answer": "counterexample", "word": ["R"]}),
             422,
             "malformed",
             "label",
@@ -317,7 +310,17 @@ async fn answers_that_cannot_be_are_refused() {
             "no_such_question",
             "question",
         ),
-    ] {
+    ]
+}
+
+#[tokio::test]
+async fn answers_that_cannot_be_are_refused() {
+    let site = Site::in_memory();
+    let session = create(&site, json!({"task": "robot"})).await;
+    let answers = format!("{session}/answers");
+    let open = site.get(&format!("{session}/question")).await.json();
+    assert_eq!(open["number"], 1);
+    for (body, status, code, field) in bad_answers() {
         let reply = site.post(&answers, body.clone()).await;
         check(&reply, status, code, field);
         assert_eq!(
@@ -415,7 +418,7 @@ async fn addresses_that_lead_nowhere_say_so() {
 #[tokio::test]
 async fn answers_can_be_withdrawn_changed_and_undone() {
     let site = Site::in_memory();
-    let session = create(&site, json!({"task": "tomita:5", "strategy": "membership"})).await;
+    let session = create(&site, json!({"task": "robot", "strategy": "membership"})).await;
     let first = site.get(&format!("{session}/question")).await.json();
     assert_eq!(first["kind"], "membership");
     let answers = format!("{session}/answers");
@@ -451,7 +454,7 @@ async fn answers_can_be_withdrawn_changed_and_undone() {
         mended.text
     );
     // As if it had been rejected from the beginning.
-    let fresh = create(&site, json!({"task": "tomita:5", "strategy": "membership"})).await;
+    let fresh = create(&site, json!({"task": "robot", "strategy": "membership"})).await;
     let rejected = site
         .post(
             &format!("{fresh}/answers"),
@@ -466,7 +469,7 @@ async fn answers_can_be_withdrawn_changed_and_undone() {
 #[tokio::test]
 async fn answers_given_at_once_are_counted_once() {
     let site = std::sync::Arc::new(Site::in_memory());
-    let session = create(&site, json!({"task": "tomita:5", "strategy": "membership"})).await;
+    let session = create(&site, json!({"task": "robot", "strategy": "membership"})).await;
     let tasks: Vec<_> = (0..8)
         .map(|i| {
             let (site, path) = (site.clone(), format!("{session}/answers"));
