@@ -4,16 +4,17 @@ use std::cell::Cell;
 
 use batsat::{Callbacks, ClauseKind, SolverInterface, lbool};
 
-use super::solver::{Answer, Lit, Model, Solver};
+use super::solver::{Answer, CLAUSES_PER_UNIT, Lit, Model, Solver};
 use crate::evidence::Budget;
 
-/// The units of work that one decision takes (measured: one to two µs with
-/// what it propagates).
-const UNITS_PER_DECISION: u64 = 1;
+/// The units of work that one decision takes (measured, as are the next ones,
+/// on formulas of 9 to 14 states: a unit is then one to two µs).
+const UNITS_PER_DECISION: u64 = 3;
 
-/// The units of work that one conflict takes, and those for every literal of
-/// the clause learned from it.
-const UNITS_PER_CONFLICT: u64 = 10;
+/// The units that one conflict takes, and those for every literal of the clause
+/// learned from it.
+const UNITS_PER_CONFLICT: u64 = 30;
+const UNITS_PER_LITERAL: u64 = 2;
 
 /// Counts work, and stops the solver when there has been enough.
 struct Meter {
@@ -29,7 +30,7 @@ impl Meter {
 
 impl Callbacks for Meter {
     fn on_new_clause(&mut self, clause: &[batsat::Lit], _: ClauseKind) {
-        self.take(UNITS_PER_CONFLICT + clause.len() as u64 / 2);
+        self.take(UNITS_PER_CONFLICT + UNITS_PER_LITERAL * clause.len() as u64);
     }
 
     /// Asked at every decision. Once true it stays true until the next solve,
@@ -44,6 +45,8 @@ impl Callbacks for Meter {
 pub(super) struct Batsat {
     solver: batsat::Solver<Meter>,
     variables: usize,
+    /// Clauses since the last solve.
+    added: u64,
     clause: Vec<batsat::Lit>,
 }
 
@@ -56,6 +59,7 @@ impl Batsat {
         Self {
             solver: batsat::Solver::new(batsat::SolverOpts::default(), meter),
             variables: 0,
+            added: 0,
             clause: Vec::new(),
         }
     }
@@ -74,6 +78,7 @@ impl Solver for Batsat {
     }
 
     fn add_clause(&mut self, clause: &[Lit]) {
+        self.added += 1;
         let mut translated = std::mem::take(&mut self.clause);
         translated.clear();
         for &lit in clause {
@@ -87,7 +92,8 @@ impl Solver for Batsat {
     }
 
     fn solve(&mut self, assumptions: &[Lit], budget: &mut Budget) -> Answer {
-        if !budget.spend(1) {
+        let added = std::mem::take(&mut self.added);
+        if !budget.spend(1 + added / CLAUSES_PER_UNIT) {
             return Answer::Unknown;
         }
         let assumptions: Vec<_> = assumptions.iter().map(|&lit| self.lit(lit)).collect();

@@ -63,6 +63,9 @@ pub(super) enum Answer {
     Unknown,
 }
 
+/// The clauses whose building and loading takes one unit of work.
+pub(super) const CLAUSES_PER_UNIT: u64 = 2;
+
 /// An incremental SAT solver.
 pub(super) trait Solver {
     /// A new variable, as its positive literal. Variables are numbered from 0.

@@ -283,7 +283,7 @@ fn the_budget_stops_a_hard_search_and_the_next_is_answered() {
             count: 1,
             seed: 0,
         };
-        let mut budget = Budget::new(20_000);
+        let mut budget = Budget::new(200_000);
         let verdict = engine.search(&query(&all, 14), &mut budget);
         assert!(
             matches!(verdict, Verdict::OverBudget),
@@ -319,7 +319,7 @@ fn the_same_budget_ends_at_the_same_place() {
                 "varisat" => varisat_engine(),
                 _ => batsat_engine(),
             };
-            let mut budget = Budget::new(50_000);
+            let mut budget = Budget::new(200_000);
             let states = (1..100)
                 .find(|&states| {
                     let query = Query {
