@@ -86,6 +86,8 @@ struct ConflictPage {
     minimal: bool,
     bound: Option<usize>,
     larger: Option<usize>,
+    /// Whether something was known at the start, which may have a part in it.
+    known: bool,
 }
 
 struct Download {
@@ -177,6 +179,7 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 .bound
                 .map(|bound| (bound * 2).min(MAX_STATES))
                 .filter(|larger| *larger > task.max_states),
+            known: !task.examples.is_empty(),
         }),
         Position::Done(hypothesis) => render(&DonePage {
             shell,

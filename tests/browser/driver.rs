@@ -92,8 +92,10 @@ impl Browser {
             let path = files
                 .map(|entry| entry.unwrap().path())
                 .find(|path| path.to_string_lossy().ends_with(suffix))?;
-            // Chromium writes under another name and renames at the end.
-            Some(std::fs::read_to_string(path).unwrap())
+            // Chromium takes the name with an empty file, writes under another,
+            // and renames that at the end.
+            let text = std::fs::read_to_string(path).unwrap();
+            (!text.is_empty()).then_some(text)
         })
         .await
     }
@@ -181,6 +183,9 @@ fn capabilities(folder: &Path, wishes: Wishes) -> Capabilities {
         "--disable-background-networking",
         "--disable-component-update",
         "--disable-sync",
+        "--disable-extensions",
+        // A page that is kept alive for going back costs a process.
+        "--disable-features=BackForwardCache,RenderDocument",
         "--no-first-run",
         "--hide-scrollbars",
         "--force-prefers-reduced-motion",
