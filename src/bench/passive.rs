@@ -2,8 +2,8 @@
 //! takes on random samples, beside `dfa-identify` from `PyPI`.
 //!
 //! Both run as processes of their own and are charged their whole CPU time, the
-//! start of an interpreter included: this is what a user waits for. A time limit
-//! ends a run; seconds decide nothing about what is found.
+//! start of an interpreter included: this is what a user waits for on an idle
+//! machine. CPU time ends the rival's run, and work ends ours.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,10 +16,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wait4::Wait4;
 
-/// What `dfa-identify` is run as: `python -c THIS sample.abb`. It prints the
-/// number of states of what it found, without a sink that it left out.
+/// What `dfa-identify` is run as: `python -c THIS sample.abb SECONDS`. It prints
+/// the number of states of what it found, without a sink that it left out, and
+/// ends itself after so much CPU time.
 pub const DFA_IDENTIFY: &str = "\
-import sys
+import resource, sys
+resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[2]),) * 2)
 from dfa_identify import find_dfa
 accepted, rejected = [], []
 with open(sys.argv[1]) as lines:
@@ -118,12 +120,13 @@ pub enum Outcome {
     Stopped,
 }
 
-/// Runs a command to its end, or stops it after `limit` of wall time.
+/// Runs a command until it ends or uses up its own limit, or stops it after
+/// `patience` of wall time.
 ///
 /// # Errors
 ///
 /// If it cannot be started at all.
-pub fn measure(mut command: Command, limit: Duration) -> std::io::Result<Outcome> {
+pub fn measure(mut command: Command, patience: Duration) -> std::io::Result<Outcome> {
     use std::io::Read as _;
 
     let mut child = command
@@ -144,7 +147,7 @@ pub fn measure(mut command: Command, limit: Duration) -> std::io::Result<Outcome
     let (ended, watch) = mpsc::channel::<()>();
     let process = rustix::process::Pid::from_child(&child);
     let watchdog = std::thread::spawn(move || {
-        let stop = watch.recv_timeout(limit) == Err(mpsc::RecvTimeoutError::Timeout);
+        let stop = watch.recv_timeout(patience) == Err(mpsc::RecvTimeoutError::Timeout);
         if stop {
             // It may just have ended by itself, which is as good.
             let _ = rustix::process::kill_process(process, rustix::process::Signal::KILL);
@@ -160,7 +163,8 @@ pub fn measure(mut command: Command, limit: Duration) -> std::io::Result<Outcome
             .unwrap_or_default()
     };
     let (output, errors) = (text(output), text(errors));
-    Ok(if stopped {
+    // Only a limit of the system's ends either of them by a signal.
+    Ok(if stopped || used.status.code().is_none() {
         Outcome::Stopped
     } else if used.status.success() {
         Outcome::Done {
@@ -192,9 +196,13 @@ pub fn ours(sample: &Path, budget: u64) -> std::io::Result<Command> {
     Ok(command)
 }
 
-/// `dfa-identify` on a sample's file, by the Python that has it installed.
-pub fn dfa_identify(python: &Path, sample: &Path) -> Command {
+/// `dfa-identify` on a sample's file, by the Python that has it installed, for so
+/// much CPU time.
+pub fn dfa_identify(python: &Path, sample: &Path, limit: Duration) -> Command {
     let mut command = Command::new(python);
-    command.args(["-c", DFA_IDENTIFY]).arg(sample);
+    command
+        .args(["-c", DFA_IDENTIFY])
+        .arg(sample)
+        .arg(limit.as_secs().to_string());
     command
 }

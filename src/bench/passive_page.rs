@@ -60,9 +60,9 @@ pub fn markdown(rows: &[Row], command: &str, limit: Duration, machine: &str) -> 
     let _ = writeln!(
         page,
         "CPU seconds of the whole process, user and system. `memrep identify` beside \
-         `dfa-identify` (PyPI) in the same run, which has {} wall seconds for a sample. \
+         `dfa-identify` (PyPI) in the same run, which has {} CPU seconds for a sample. \
          Ours is the median of the runs, with the fastest and the slowest; every automaton \
-         was run on the whole sample, and one state fewer was refuted.\n",
+         was run on the whole sample, and every smaller size was refuted first.\n",
         limit.as_secs()
     );
     let _ = writeln!(page, "Made by `{command}` ({machine}).\n");

@@ -16,6 +16,9 @@ use crate::cli::{files, output};
 /// runs a little before the limit does.
 const WORK_PER_SECOND: u64 = 2_000_000;
 
+/// How much longer than its CPU time a run may take on a busy machine.
+const PATIENCE: u32 = 10;
+
 /// Arguments of `memrep bench identify`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -50,7 +53,7 @@ pub(super) struct Args {
     /// How often ours is timed on each sample.
     #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
     trials: u32,
-    /// The seconds that a run may take.
+    /// The seconds of CPU time that a run may take.
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = clap::value_parser!(u64).range(1..))]
     limit: u64,
     /// A Python with dfa-identify, to be timed beside.
@@ -121,7 +124,7 @@ fn measure(args: &Args, path: &Path, sample: String, limit: Duration) -> anyhow:
     let mut ours = Vec::new();
     for _ in 0..args.trials {
         let command = passive::ours(path, budget).with_context(place)?;
-        let outcome = passive::measure(command, 2 * limit).with_context(place)?;
+        let outcome = passive::measure(command, PATIENCE * limit).with_context(place)?;
         let solved = matches!(outcome, Outcome::Done { .. });
         ours.push(outcome);
         if !solved {
@@ -129,7 +132,7 @@ fn measure(args: &Args, path: &Path, sample: String, limit: Duration) -> anyhow:
         }
     }
     let rival = args.rival.as_deref().map(|python| {
-        passive::measure(passive::dfa_identify(python, path), limit)
+        passive::measure(passive::dfa_identify(python, path, limit), PATIENCE * limit)
             .with_context(|| format!("{}: cannot run this Python", python.display()))
     });
     Ok(Row {
