@@ -113,13 +113,12 @@ fn told(alphabet: &Alphabet, question: &Question<Word, Dfa>, reply: &Reply<Word>
         }
     };
     let reply = match reply {
-        Reply::Accept => "yes".to_owned(),
+        Reply::Accept | Reply::Correct => "yes".to_owned(),
         Reply::Reject => "no".to_owned(),
         Reply::Compared(Comparison::First) => "the first".to_owned(),
         Reply::Compared(Comparison::Second) => "the second".to_owned(),
         Reply::Compared(Comparison::Equal) => "neither".to_owned(),
         Reply::Compared(Comparison::Incomparable) => "I cannot say".to_owned(),
-        Reply::Correct => "yes".to_owned(),
         Reply::Counterexample { atom, label: true } => format!("no, {} is fine", spell(atom)),
         Reply::Counterexample { atom, .. } => format!("no, {} is not fine", spell(atom)),
         Reply::Skip => "skip".to_owned(),

@@ -122,23 +122,24 @@ fn check_order(order: &PreferenceOrder, target: &Dfa) -> [f64; 3] {
         .iter()
         .map(|x| words.iter().map(|y| order.compare(x, y)).collect())
         .collect();
-    let below = |x: usize, y: usize| matches!(table[x][y], Comparison::Second | Comparison::Equal);
+    let answer = |x: usize, y: usize| table[x][y];
+    let below = |x, y| matches!(answer(x, y), Comparison::Second | Comparison::Equal);
     let (mut strict, mut equal, mut incomparable, mut alike, mut pairs) = (0, 0, 0, 0, 0);
     for x in 0..words.len() {
-        assert_eq!(table[x][x], Comparison::Equal);
+        assert_eq!(answer(x, x), Comparison::Equal);
         for y in 0..words.len() {
-            assert_eq!(table[x][y], table[y][x].mirrored());
+            assert_eq!(answer(x, y), answer(y, x).mirrored());
             let labels = [x, y].map(|w| target.accepts(&words[w]));
             assert!(!below(x, y) || labels[0] <= labels[1], "{x} {y}");
             assert!((0..words.len()).all(|z| !below(x, y) || !below(y, z) || below(x, z)));
             if x < y {
                 pairs += 1;
-                incomparable += i32::from(table[x][y] == Comparison::Incomparable);
+                incomparable += i32::from(answer(x, y) == Comparison::Incomparable);
                 if labels[0] == labels[1] {
                     alike += 1;
-                    equal += i32::from(table[x][y] == Comparison::Equal);
+                    equal += i32::from(answer(x, y) == Comparison::Equal);
                     strict += i32::from(matches!(
-                        table[x][y],
+                        answer(x, y),
                         Comparison::First | Comparison::Second
                     ));
                 }

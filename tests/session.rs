@@ -419,11 +419,12 @@ proptest! {
         let mut clean = Session::replay(&clean).unwrap();
         let next = clean.think().unwrap();
         clean.apply(&next).unwrap();
-        match (clean.position(), kept.session.position()) {
-            (Position::Conflict(a), Position::Conflict(b)) => {
-                prop_assert_eq!(a.cause, b.cause);
-            }
-            _ => prop_assert_eq!(shown(&clean), shown(&kept.session)),
+        if let (Position::Conflict(a), Position::Conflict(b)) =
+            (clean.position(), kept.session.position())
+        {
+            prop_assert_eq!(a.cause, b.cause);
+        } else {
+            prop_assert_eq!(shown(&clean), shown(&kept.session));
         }
     }
 

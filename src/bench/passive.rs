@@ -1,5 +1,5 @@
 //! The passive experiment: how long finding a smallest consistent automaton
-//! takes on random samples, beside `dfa-identify` from PyPI.
+//! takes on random samples, beside `dfa-identify` from `PyPI`.
 //!
 //! Both run as processes of their own and are charged their whole CPU time, the
 //! start of an interpreter included: this is what a user waits for. A time limit
@@ -66,7 +66,8 @@ pub fn random_sample(states: usize, words: usize, seed: u64) -> (Dfa, Sample) {
 
 /// The length of the longest words that are drawn for a target of this size.
 fn longest(states: usize) -> u32 {
-    (2.0 * (states as f64).log2() + 5.0).ceil() as u32
+    // ⌈2·log₂ n⌉ is the least power of two that n² does not exceed.
+    (states * states).next_power_of_two().ilog2() + 5
 }
 
 /// How many words there are to draw from, for a target of this size.

@@ -1,5 +1,6 @@
 //! `memrep identify`: the smallest automata consistent with a sample.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -193,10 +194,13 @@ fn table(dfa: &Dfa) -> anyhow::Result<()> {
     let widths: Vec<usize> = (dfa.alphabet().names())
         .map(|name| name.len().max(digits))
         .collect();
-    let cells = |cells: Vec<String>| -> String {
-        (cells.iter().zip(&widths))
-            .map(|(cell, &width)| format!("  {cell:>width$}"))
-            .collect()
+    let cells = |cells: Vec<String>| {
+        let mut line = String::new();
+        for (cell, &width) in cells.iter().zip(&widths) {
+            // Writing to a string cannot fail.
+            let _ = write!(line, "  {cell:>width$}");
+        }
+        line
     };
     let names = cells(dfa.alphabet().names().map(str::to_owned).collect());
     output::line(format!("   {:digits$} |{names}", ""))?;

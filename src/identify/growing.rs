@@ -192,7 +192,7 @@ mod tests {
                     let nexts = alphabet.symbols().map(|symbol| dfa.next(state, symbol));
                     let accepting = usize::from(dfa.is_accepting(state));
                     nexts
-                        .map(|next| next.index())
+                        .map(automata::StateId::index)
                         .collect::<Vec<_>>()
                         .into_iter()
                         .chain([accepting])

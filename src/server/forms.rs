@@ -231,6 +231,27 @@ fn typed_word(text: &str, field: &str, alphabet: &Alphabet) -> Result<Word, Malf
     Ok(symbols.into())
 }
 
+/// What is wrong with a form, and at which of its fields that is to be said.
+#[derive(Clone, Default)]
+pub(crate) struct Faults(Option<(&'static str, String)>);
+
+impl Faults {
+    /// The error at the field that it speaks of, or else at the first.
+    pub(crate) fn of(error: &WebError, fields: &[&'static str]) -> Self {
+        let path = error.field().unwrap_or_default();
+        let named = path.split(['[', '.']).next().unwrap_or_default();
+        let field = fields.iter().find(|field| **field == named);
+        let field = field.or(fields.first()).copied().unwrap_or_default();
+        Self(Some((field, error.message())))
+    }
+
+    /// What is to be said at this field.
+    pub(crate) fn at(&self, field: &str) -> Option<&str> {
+        let (faulty, message) = self.0.as_ref()?;
+        (*faulty == field).then_some(message)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! The pages: everything a person does, as plain forms.
+//! The pages of a session: everything a person does, as plain forms.
 
 use askama::Template;
 use axum::Router;
@@ -11,22 +11,21 @@ use axum::routing::{get, post};
 use super::AppState;
 use super::api::session_id;
 use super::error::{PageError, WebError};
-use super::export;
-use super::forms::Form;
+use super::forms::{Faults, Form};
 use super::views::{Bar, Chip, PastView, RuleView, Shell, WordView, chips, render};
+use super::{export, start};
 use crate::learner::{Counts, Question, Reply};
-use crate::session::{
-    ConflictCause, Decision, MAX_STATES, Position, Session, Setup, Task, offered, ready,
-};
-use crate::store::{Listed, SessionId};
+use crate::session::{ConflictCause, Decision, MAX_STATES, Position, Session};
+use crate::store::SessionId;
 
-type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
+/// A form's body, or why it is none.
+pub(crate) type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
 
 /// All routes of the pages.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
-        .route("/", get(start))
-        .route("/sessions", post(begin))
+        .route("/", get(start::show))
+        .route("/sessions", post(start::begin))
         .route("/sessions/{id}", get(show))
         .route("/sessions/{id}/answers", post(answer))
         .route("/sessions/{id}/retractions", post(retract))
@@ -36,7 +35,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/automaton.svg", get(drawing))
 }
 
-fn read_form(fields: Fields) -> Result<Form, WebError> {
+pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {
     match fields {
         Ok(FormBody(fields)) => Ok(Form::new(fields)),
         Err(rejection) if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE => {
@@ -47,137 +46,6 @@ fn read_form(fields: Fields) -> Result<Form, WebError> {
         )),
     }
 }
-
-// ---- the start page --------------------------------------------------------
-
-struct TaskCard {
-    name: String,
-    title: String,
-    about: String,
-    chips: Vec<Chip>,
-}
-
-struct SessionCard {
-    id: String,
-    title: String,
-    state: &'static str,
-    at: String,
-    when: String,
-}
-
-#[derive(Default)]
-struct OwnForm {
-    title: String,
-    symbols: String,
-    examples: String,
-}
-
-/// What is wrong with a form, and at which of its fields that is to be said.
-#[derive(Clone, Default)]
-struct Faults(Option<(&'static str, String)>);
-
-impl Faults {
-    /// The error at the field that it speaks of, or else at the first.
-    fn of(error: &WebError, fields: &[&'static str]) -> Self {
-        let path = error.field().unwrap_or_default();
-        let named = path.split(['[', '.']).next().unwrap_or_default();
-        let field = fields.iter().find(|field| **field == named);
-        let field = field.or(fields.first()).copied().unwrap_or_default();
-        Self(Some((field, error.message())))
-    }
-
-    /// What is to be said at this field.
-    fn at(&self, field: &str) -> Option<&str> {
-        let (faulty, message) = self.0.as_ref()?;
-        (*faulty == field).then_some(message)
-    }
-}
-
-#[derive(Template)]
-#[template(path = "start.html")]
-struct StartPage {
-    shell: Shell,
-    notice: Option<String>,
-    tasks: Vec<TaskCard>,
-    sessions: Vec<SessionCard>,
-    own: OwnForm,
-    faults: Faults,
-}
-
-async fn start_page(app: &AppState, own: OwnForm, faults: Faults) -> Result<Response, WebError> {
-    let sessions = app.teaching.list(20).await?;
-    Ok(render(&StartPage {
-        shell: Shell::plain("Teach a rule"),
-        notice: None,
-        tasks: offered().map(task_card).collect(),
-        sessions: sessions.iter().filter_map(session_card).collect(),
-        own,
-        faults,
-    }))
-}
-
-fn task_card(task: Task) -> TaskCard {
-    let about = task.guidelines.split(". ").next().unwrap_or_default();
-    TaskCard {
-        about: format!("{}.", about.trim_end_matches('.')),
-        chips: chips(&task),
-        name: task.name,
-        title: task.title,
-    }
-}
-
-/// `None` for a log of another version, which cannot be shown but does not
-/// hide the others either.
-fn session_card(listed: &Listed) -> Option<SessionCard> {
-    let first: serde_json::Value = serde_json::from_str(&listed.first.body).ok()?;
-    let last: serde_json::Value = serde_json::from_str(&listed.last.body).ok()?;
-    Some(SessionCard {
-        id: listed.id.to_string(),
-        title: first["task"]["title"].as_str()?.to_owned(),
-        state: match last["event"].as_str()? {
-            "done" => "rule learned",
-            "conflict" => "answers disagree",
-            "asked" if last["kind"] == "equivalence" => "a rule to look at",
-            _ => "a question waits",
-        },
-        when: format!(
-            "{} {} UTC",
-            listed.last.at.get(..10)?,
-            listed.last.at.get(11..16)?
-        ),
-        at: listed.last.at.clone(),
-    })
-}
-
-async fn start(State(app): State<AppState>) -> Result<Response, PageError> {
-    Ok(start_page(&app, OwnForm::default(), Faults::default()).await?)
-}
-
-async fn begin(State(app): State<AppState>, fields: Fields) -> Result<Response, PageError> {
-    let form = read_form(fields)?;
-    let task = if form.has("task") {
-        ready(form.text("task")).map_err(WebError::from)?
-    } else {
-        match form.own_task() {
-            Ok(task) => task,
-            Err(fault) => {
-                let own = OwnForm {
-                    title: form.text("title").to_owned(),
-                    symbols: form.text("symbols").to_owned(),
-                    examples: form.text("examples").to_owned(),
-                };
-                let error = WebError::from(fault);
-                let faults = Faults::of(&error, &["title", "symbols", "examples"]);
-                let page = start_page(&app, own, faults).await?;
-                return Ok((error.status(), page).into_response());
-            }
-        }
-    };
-    let id = app.teaching.create(task, Setup::default()).await?;
-    Ok(Redirect::to(&format!("/sessions/{id}")).into_response())
-}
-
-// ---- a session -------------------------------------------------------------
 
 #[derive(Template)]
 #[template(path = "question.html")]
@@ -360,7 +228,10 @@ async fn act(
     decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
 ) -> Result<Response, PageError> {
     match app.teaching.act(id, decide, |_, _| ()).await {
-        Ok(()) => Ok(Redirect::to(&format!("/sessions/{id}")).into_response()),
+        // Where the learner takes long, the session's own page does the waiting.
+        Ok(()) | Err(WebError::Slow) => {
+            Ok(Redirect::to(&format!("/sessions/{id}")).into_response())
+        }
         Err(error) if error.is_refusal() => {
             let typed = match error.field() {
                 Some("word" | "label") => Typed {

@@ -55,8 +55,11 @@ impl Teaching {
             store.append(&id, 0, &body).map_err(WebError::internal)
         })
         .await?;
-        self.look(id, |_| ()).await?;
-        Ok(id)
+        match self.look(id, |_| ()).await {
+            // It is there, and its first question will be.
+            Ok(()) | Err(WebError::Slow) => Ok(id),
+            Err(error) => Err(error),
+        }
     }
 
     /// What `view` shows of a session that has thought.

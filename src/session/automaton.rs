@@ -1,46 +1,26 @@
 //! Automata inside a log, in the form of the automaton file.
 
+use automata::format::json;
 use automata::{Alphabet, Dfa};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::event::Unreadable;
 
 /// The automaton file's content: `{"format":"memrep-dfa","version":1,…}`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Automaton {
-    format: String,
-    version: u32,
-    alphabet: Vec<String>,
-    states: usize,
-    start: usize,
-    accepting: Vec<usize>,
-    delta: Vec<Vec<usize>>,
-}
-
-const FORMAT: &str = "memrep-dfa";
-const VERSION: u32 = 1;
+#[serde(transparent)]
+pub struct Automaton(Value);
 
 impl Automaton {
     /// The file's content for this automaton.
+    #[expect(
+        clippy::missing_panics_doc,
+        reason = "what the writer of the format writes is JSON"
+    )]
     pub fn of(dfa: &Dfa) -> Self {
-        let row = |state| {
-            let next = |symbol| dfa.next(state, symbol).index();
-            dfa.alphabet().symbols().map(next).collect()
-        };
-        Self {
-            format: FORMAT.to_owned(),
-            version: VERSION,
-            alphabet: dfa.alphabet().names().map(str::to_owned).collect(),
-            states: dfa.size(),
-            start: dfa.start().index(),
-            accepting: dfa
-                .states()
-                .filter(|&state| dfa.is_accepting(state))
-                .map(automata::StateId::index)
-                .collect(),
-            delta: dfa.states().map(row).collect(),
-        }
+        let text = json::write(&json::Document::from(dfa.clone()));
+        Self(serde_json::from_str(&text).expect("an automaton file is JSON"))
     }
 
     /// The automaton, which must be over `alphabet`.
@@ -49,27 +29,16 @@ impl Automaton {
     ///
     /// If it is over another one, or no automaton.
     pub fn read(&self, alphabet: &Alphabet) -> Result<Dfa, Unreadable> {
-        let unreadable = |message: String| Unreadable(format!("hypothesis: {message}"));
-        if self.format != FORMAT || self.version != VERSION {
-            return Err(unreadable(format!(
-                "`{}` version {} is not `{FORMAT}` version {VERSION}",
-                self.format, self.version
-            )));
+        let dfa = json::read(&self.0.to_string())
+            .map_err(|error| Unreadable(format!("hypothesis: {error}")))?
+            .dfa;
+        if dfa.alphabet() == alphabet {
+            Ok(dfa)
+        } else {
+            Err(Unreadable(format!(
+                "the hypothesis is over {}, not over {alphabet}",
+                dfa.alphabet()
+            )))
         }
-        if !alphabet
-            .names()
-            .eq(self.alphabet.iter().map(String::as_str))
-        {
-            return Err(unreadable(format!("it is not over {alphabet}")));
-        }
-        let mut accepting = vec![false; self.states];
-        for &state in &self.accepting {
-            match accepting.get_mut(state) {
-                Some(entry) => *entry = true,
-                None => return Err(unreadable(format!("state {state} does not exist"))),
-            }
-        }
-        Dfa::new(alphabet.clone(), self.start, accepting, &self.delta)
-            .map_err(|error| unreadable(error.to_string()))
     }
 }

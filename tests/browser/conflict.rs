@@ -60,8 +60,8 @@ pub(crate) fn can_be_true(cards: &[Card]) -> bool {
     for &(worse, better) in &strict {
         reaches[worse][better] = true;
     }
-    for word in 0..count {
-        reaches[word][word] = true;
+    for (word, row) in reaches.iter_mut().enumerate() {
+        row[word] = true;
     }
     for middle in 0..count {
         for from in 0..count {

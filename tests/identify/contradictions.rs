@@ -203,8 +203,8 @@ fn power(length: usize) -> Word {
     std::iter::repeat_n(automata::Symbol::new(0), length).collect()
 }
 
-fn told(facts: Answered, max_states: usize) -> Contradiction {
-    let failure = identifier(EngineChoice::Auto, &Draw::alphabet(1), max_states, &facts)
+fn told(facts: &Answered, max_states: usize) -> Contradiction {
+    let failure = identifier(EngineChoice::Auto, &Draw::alphabet(1), max_states, facts)
         .smallest(1, 0, &mut Budget::new(1_000_000))
         .expect_err("the facts are contradictory");
     match failure {
@@ -225,7 +225,7 @@ fn the_shortest_chain_of_preferences_is_told() {
         (answer(6), below(4, 3)),
         (answer(7), label(3, false)),
     ];
-    let contradiction = told(facts, 9);
+    let contradiction = told(&facts, 9);
     assert_eq!(contradiction.cause, Cause::MemRep);
     assert_eq!(contradiction.answers, [1, 5, 6, 7].map(AnswerId));
 }
@@ -233,16 +233,16 @@ fn the_shortest_chain_of_preferences_is_told() {
 #[test]
 fn what_is_known_from_the_start_is_never_blamed() {
     let known = vec![(None, label(1, true)), (None, label(1, false))];
-    assert!(told(known, 9).answers.is_empty());
+    assert!(told(&known, 9).answers.is_empty());
 
     let mut facts: Answered = (0..4).map(|n| (None, label(n, n == 3))).collect();
     facts.push((Some(AnswerId(8)), label(4, true)));
-    let contradiction = told(facts.clone(), 2);
+    let contradiction = told(&facts, 2);
     assert_eq!(contradiction.cause, Cause::States { bound: 2 });
     assert!(contradiction.answers.is_empty());
     // Accepting 3 and 4 but no less takes the known facts and the answer.
     facts.push((None, label(5, false)));
-    let contradiction = told(facts, 4);
+    let contradiction = told(&facts, 4);
     assert_eq!(contradiction.answers, [AnswerId(8)]);
 }
 

@@ -140,7 +140,12 @@ fn teach(class: &FiniteClass, target: FiniteConcept, order: Relation, config: Co
         learner
             .record(AnswerId(number), question, round, reply)
             .expect("the reply fits");
-        facts.extend(learner.entries().last().and_then(|entry| entry.fact()));
+        facts.extend(
+            learner
+                .entries()
+                .last()
+                .and_then(memrep::learner::Entry::fact),
+        );
     }
     panic!("not learned after {CAP} questions: {facts:?}");
 }

@@ -80,14 +80,13 @@ impl<S: Solver> Engine for SatEngine<S> {
                     let dfa = table.dfa(query.problem)?;
                     consistent(&dfa, query.problem, query.standing).then_some(dfa)
                 });
-                match automata.collect::<Option<Vec<Dfa>>>() {
-                    Some(automata) => Verdict::Found { automata, complete },
-                    None => {
-                        // A solver that finds false models is not to be asked
-                        // again, nor is anything it learned to be used.
-                        self.encodings.clear();
-                        Verdict::OverBudget
-                    }
+                if let Some(automata) = automata.collect::<Option<Vec<Dfa>>>() {
+                    Verdict::Found { automata, complete }
+                } else {
+                    // A solver that finds false models is not to be asked
+                    // again, nor is anything it learned to be used.
+                    self.encodings.clear();
+                    Verdict::OverBudget
                 }
             }
         }

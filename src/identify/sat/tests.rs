@@ -320,7 +320,7 @@ fn the_same_budget_ends_at_the_same_place() {
                 _ => batsat_engine(),
             };
             let mut budget = Budget::new(50_000);
-            let states = (1..)
+            let states = (1..100)
                 .find(|&states| {
                     let query = Query {
                         problem: &hard,

@@ -89,15 +89,14 @@ impl Solver for Varisat {
         if !budget.spend(1) {
             return Answer::Unknown;
         }
-        let worker = match self.worker.take() {
-            Some(worker) => worker,
-            None => {
-                self.sent = 0;
-                let Some(worker) = Worker::start() else {
-                    return Answer::Unknown;
-                };
-                worker
-            }
+        let worker = if let Some(worker) = self.worker.take() {
+            worker
+        } else {
+            self.sent = 0;
+            let Some(worker) = Worker::start() else {
+                return Answer::Unknown;
+            };
+            worker
         };
         let allowed = budget.left().saturating_mul(BYTES_PER_UNIT);
         let task = Task {
@@ -233,15 +232,12 @@ struct Meter(Rc<Cell<u64>>);
 
 impl io::Write for Meter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self.0.get().checked_sub(bytes.len() as u64) {
-            Some(left) => {
-                self.0.set(left);
-                Ok(bytes.len())
-            }
-            None => {
-                self.0.set(0);
-                Err(io::Error::other("the budget is spent"))
-            }
+        if let Some(left) = self.0.get().checked_sub(bytes.len() as u64) {
+            self.0.set(left);
+            Ok(bytes.len())
+        } else {
+            self.0.set(0);
+            Err(io::Error::other("the budget is spent"))
         }
     }
 
