@@ -274,7 +274,7 @@ fn bad_input_is_told() {
             "learn --target robot --save learned.png",
             "the extension does not tell the format",
         ),
-        ("bench nothing", "possible values: thesis"),
+        ("bench nothing", "unrecognized subcommand"),
         ("bench thesis --trials 0", "--trials"),
         (
             "bench thesis --trials 1 --out cut.json",
