@@ -12,10 +12,11 @@ use super::problem::{FactId, Problem};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
-/// The nodes that [`EngineChoice::Auto`] gives the enumerator for one size: a
-/// second or two. What it has not settled by then is left to SAT, which learns
-/// from its conflicts.
-const ENUMERATED_NODES: u64 = 3_000_000;
+/// The units of work that [`EngineChoice::Auto`] gives the enumerator for one
+/// size: some minutes. No sample was met on which SAT is faster (measured with 5
+/// to 20 states), so it has its turn only when all else failed, or with the
+/// second half of a smaller budget.
+const ENUMERATED_UNITS: u64 = 100_000_000;
 
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
@@ -238,14 +239,14 @@ impl Engines {
     }
 }
 
-/// The nodes the enumerator may take before SAT has its turn: a function of the
+/// The units the enumerator may take before SAT has its turn: a function of the
 /// query and the budget, so that earlier searches leave no trace.
 fn enumerator_share(query: &Query<'_>, budget: &Budget) -> u64 {
     if query.problem.alphabet().len() == 1 {
         // One path that closes somewhere: a search as long as the automaton.
         budget.left()
     } else {
-        ENUMERATED_NODES.min(budget.left() / 2)
+        ENUMERATED_UNITS.min(budget.left() / 2)
     }
 }
 
