@@ -245,6 +245,11 @@ impl Faults {
         Self(Some((field, error.message())))
     }
 
+    /// What is to be said, wherever.
+    pub(crate) fn message(&self) -> Option<String> {
+        self.0.as_ref().map(|(_, message)| message.clone())
+    }
+
     /// What is to be said at this field.
     pub(crate) fn at(&self, field: &str) -> Option<&str> {
         let (faulty, message) = self.0.as_ref()?;

@@ -123,7 +123,15 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
     let task = session.task();
     let bar = Bar::of(id.to_string(), session);
     let shell = Shell::of(bar.clone());
-    let notice = typed.notice;
+    let showing = match session.position() {
+        Position::Asking(number) => session.asked(*number).map(|asked| &asked.question),
+        _ => None,
+    };
+    // Only the page of an equivalence query has the fields to say it at.
+    let notice = match showing {
+        Some(Question::Equivalence { .. }) => typed.notice,
+        _ => typed.notice.or_else(|| typed.faults.message()),
+    };
     match session.position() {
         Position::Thinking => PageError(WebError::Slow).into_response(),
         Position::Asking(number) => {
