@@ -3,38 +3,28 @@
 //!
 //! The rooms of the house, from the ground up (`docs/architecture.md` is the
 //! map with its invariants):
+//!
+//! - [`evidence`]: what a teacher's answers say, whatever is being learned.
+//! - [`identify`]: the smallest automata consistent with evidence.
+//! - [`concept`]: what can be learned: classes of concepts, smallest first.
+//! - [`oracle`]: who can answer without a person.
+//! - [`learner`]: which question to ask next.
+//! - [`draw`]: pictures of automata.
+//! - [`session`]: one teaching session, a fold over its log.
+//! - `store` and `server` (feature `server`): where logs last; pages and API.
+//! - [`bench`]: scripted runs and the tables made of them.
+//! - [`cli`]: the commands of the `memrep` binary.
 
-/// What a teacher's answers say, whatever is being learned.
-pub mod evidence;
-
-/// The smallest automata consistent with evidence: search and SAT.
-pub mod identify;
-
-/// What can be learned: classes of concepts, smallest first.
-pub mod concept;
-
-/// Who can answer without a person: scripted teachers and their targets.
-pub mod oracle;
-
-/// Which question to ask next.
-pub mod learner;
-
-/// Scripted teaching runs and the tables made of them.
 pub mod bench;
-
-/// Pictures of automata.
+pub mod cli;
+pub mod concept;
 pub mod draw;
-
-/// One teaching session: a fold over its log.
-pub mod session;
-
-/// Where the logs of sessions last.
-#[cfg(feature = "server")]
-pub mod store;
-
-/// Pages and API over sessions.
+pub mod evidence;
+pub mod identify;
+pub mod learner;
+pub mod oracle;
 #[cfg(feature = "server")]
 pub mod server;
-
-/// The commands of the `memrep` binary.
-pub mod cli;
+pub mod session;
+#[cfg(feature = "server")]
+pub mod store;

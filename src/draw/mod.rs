@@ -9,12 +9,12 @@
 //!
 //! # Layout
 //!
-//! - [`sketch`]: which states and arrows are drawn, and what stands on them.
-//! - [`layout`]: where they stand; the only file that knows the layout crate.
-//! - [`curve`]: how an arrow runs between two circles.
-//! - [`ports`]: where arrows touch the circles.
-//! - [`text`]: how wide words are, and how they are escaped.
-//! - [`write`]: the markup.
+//! - `sketch`: which states and arrows are drawn, and what stands on them.
+//! - `layout`: where they stand; the only file that knows the layout crate.
+//! - `curve`: how an arrow runs between two circles.
+//! - `ports`: where arrows touch the circles.
+//! - `text`: how wide words are, and how they are escaped.
+//! - `write`: the markup.
 
 mod curve;
 mod layout;

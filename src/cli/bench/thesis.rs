@@ -10,7 +10,7 @@ use crate::cli::{files, output};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   memrep bench thesis
-  memrep bench thesis --trials 3 --out /tmp/results
+  memrep bench thesis --trials 3 --out results
 
 Exit status: 0 if every run learned its target, 1 if one did not, 2 if the
 arguments are at fault or a file cannot be written.")]
