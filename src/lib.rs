@@ -12,7 +12,7 @@
 //! - [`draw`]: pictures of automata.
 //! - [`session`]: one teaching session, a fold over its log.
 //! - `store` and `server` (feature `server`): where logs last; pages and API.
-//! - [`bench`]: scripted runs and the tables made of them.
+//! - [`mod@bench`]: scripted runs and the tables made of them.
 //! - [`cli`]: the commands of the `memrep` binary.
 
 pub mod bench;
