@@ -13,7 +13,7 @@ use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
 /// The units of work that [`EngineChoice::Auto`] gives the enumerator for one
-/// size: some minutes. No sample was met on which SAT is faster (measured with 5
+/// size: about a minute. No sample was met on which SAT is faster (measured with 5
 /// to 20 states), so it has its turn only when all else failed, or with the
 /// second half of a smaller budget.
 const ENUMERATED_UNITS: u64 = 100_000_000;
