@@ -9,6 +9,7 @@ use super::contradiction::{self, Finding};
 use super::engine::{Engine, Query, Verdict};
 use super::enumerate::Enumerator;
 use super::problem::{FactId, Problem};
+use super::spread::{self, Spread, Weighted, Wish};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
@@ -145,6 +146,35 @@ impl Identifier {
             }
         }
         Err(Failure::Contradiction(self.no_automaton(&core, budget)))
+    }
+
+    /// Consistent automata of several sizes, from the smallest on, with their
+    /// prior weights: a function of the standing facts and the wish alone.
+    ///
+    /// # Errors
+    ///
+    /// If no automaton within the bound is consistent, or the budget ends before
+    /// one is known.
+    pub fn spread(
+        &mut self,
+        wish: &Wish<'_, Word>,
+        budget: &mut Budget,
+    ) -> Result<Spread<Dfa>, Failure> {
+        let smallest = self.smallest(1, wish.seed, budget)?;
+        let least = smallest.automata.first().map_or(1, Dfa::size);
+        let sizes = (least, self.settings.max_states.max(least));
+        let spread = spread::gather(&mut self.problem, &self.standing, sizes, wish, budget);
+        let mut spread = spread.filter(|spread| !spread.concepts.is_empty());
+        // Where every draw failed there is still the one that was searched for.
+        Ok(spread.take().unwrap_or_else(|| Spread {
+            concepts: (smallest.automata.into_iter())
+                .map(|concept| Weighted {
+                    concept,
+                    log_weight: 0.0,
+                })
+                .collect(),
+            exact: false,
+        }))
     }
 
     /// Why no automaton within the bound is consistent.

@@ -6,18 +6,22 @@ mod completion;
 mod contradiction;
 mod engine;
 mod enumerate;
+mod grow;
+mod growth;
 mod identifier;
 mod instance;
 mod labels;
 mod partial;
 mod problem;
 mod sat;
+mod spread;
 mod tree;
 
 use automata::Dfa;
 
 use crate::evidence::AnswerId;
 pub use identifier::Identifier;
+pub use spread::{Ending, Odds, Spread, Weighted, Wish};
 
 /// Which engine answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
