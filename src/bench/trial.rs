@@ -56,7 +56,8 @@ pub enum TrialError {
 /// been asked. `clock` tells CPU time, and `observe` hears of every question.
 ///
 /// Answers that contradict each other are treated as section 5.2 of the
-/// dissertation has it: all of the minimal set are dropped, and learning goes on.
+/// dissertation has it: the minimal set is dropped, and learning goes on.
+/// Counterexamples in it stay, unless there is nothing else to drop.
 ///
 /// # Errors
 ///
@@ -94,7 +95,8 @@ where
                 if conflict.answers.is_empty() {
                     return Err(TrialError::Contradiction);
                 }
-                for answer in conflict.answers {
+                let dropped = doubted(learner, conflict.answers);
+                for answer in dropped {
                     report.dropped += u32::from(learner.retract(answer));
                 }
             }
@@ -128,6 +130,24 @@ where
     report.cost = cost(learner, report.counts);
     report.cpu = clock().saturating_sub(start);
     Ok(report)
+}
+
+/// Those of the answers that are dropped: all but the counterexamples, and these
+/// only if there is nothing else to drop. Who shows a counterexample has looked
+/// at the hypothesis, and to drop it would bring the same hypothesis again.
+fn doubted<C: ConceptClass>(learner: &Learner<C>, answers: Vec<AnswerId>) -> Vec<AnswerId> {
+    let is_counterexample = |answer: AnswerId| {
+        learner.entries().iter().any(|entry| {
+            entry.answer == answer && matches!(entry.question, Question::Equivalence { .. })
+        })
+    };
+    let (counterexamples, doubted): (Vec<_>, Vec<_>) =
+        answers.into_iter().partition(|&a| is_counterexample(a));
+    if doubted.is_empty() {
+        counterexamples
+    } else {
+        doubted
+    }
 }
 
 /// Eq. 5.2. No comparisons cost nothing, also where one would be infinite.

@@ -1,12 +1,450 @@
-//! `memrep learn`.
+//! `memrep learn`: teaches a target by a scripted teacher, and tells what it
+//! took.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::Context as _;
+use automata::format::json::{Document, Provenance};
+use automata::{Alphabet, Dfa, Word};
+use clap::ValueEnum;
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use super::files::{self, Content, Format};
+use super::output::{self, Output};
+use crate::bench::{Asked, Report, percentile, process_cpu, teach};
+use crate::concept::DfaClass;
+use crate::evidence::Comparison;
+use crate::identify::{EngineChoice, Settings};
+use crate::learner::{Config, Learner, Question, Reply, Strategy};
+use crate::oracle::{
+    Counterexamples, Order, ScriptedTeacher, Target, TargetError, TeacherSettings,
+};
+
+/// The work that one question may do: a few seconds of search.
+const BUDGET: u64 = 2_000_000;
 
 /// Arguments of `memrep learn`.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {}
+#[command(after_help = "Examples:
+  memrep learn --target tomita:4
+  memrep learn --target robot --teacher random --counterexample random --trace
+  memrep learn --target task.json --membership-cost 8 --save learned.json
+  memrep learn --target tomita:5 --comparison-cost inf --format json
+    {\"target\":\"tomita:5\",\"strategy\":\"thesis\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
+
+Targets: tomita:1 to tomita:7 (Tomita's languages over 0 and 1), tomita:3t (the
+third in the dissertation's three-state form), zeros:N (no run of more than N
+zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
+of the dissertation), or the path of an automaton file (json or dot).
+
+Exit status: 0 if the target was learned, 1 if the questions ran out first, 2 if
+the arguments or a file are at fault.")]
+pub(crate) struct Args {
+    /// What to learn: a name from the list below, or an automaton file.
+    #[arg(long, value_name = "T")]
+    target: String,
+    /// The cost of a membership query, positive.
+    #[arg(long, value_name = "A", default_value = "4", allow_negative_numbers = true, value_parser = finite_cost)]
+    membership_cost: f64,
+    /// The cost of a comparison, positive; `inf`: never ask one.
+    #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = cost)]
+    comparison_cost: f64,
+    /// How questions are chosen.
+    #[arg(long, value_name = "S", default_value = "thesis")]
+    strategy: Strategy,
+    /// The preference order of the teacher.
+    #[arg(long, value_name = "ORDER", default_value = "ordered")]
+    teacher: Order,
+    /// How the teacher refutes a wrong hypothesis.
+    #[arg(long, value_name = "KIND", default_value = "shortest")]
+    counterexample: Counterexamples,
+    /// The share of membership answers and comparisons that are wrong.
+    #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = rate)]
+    error_rate: f64,
+    /// Decides every random choice of learner and teacher.
+    #[arg(long, value_name = "N", default_value = "0")]
+    seed: u64,
+    /// Give up after so many questions.
+    #[arg(long, value_name = "N", default_value = "1000")]
+    max_questions: u32,
+    /// The largest automaton to consider, in states; 64 if not given, and 8
+    /// where the teacher errs: wrong answers look like further states, and a
+    /// bound not far above the target's size finds them out.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    max_states: Option<u16>,
+    /// Start with nothing known; otherwise the label of the empty word is known
+    /// for the Tomita languages, `zeros` and `modulo`, and eleven words for
+    /// `robot`.
+    #[arg(long)]
+    no_empty_word: bool,
+    /// Print every question with its answer.
+    #[arg(long)]
+    trace: bool,
+    /// Write the learned automaton to this file (`-`: the standard output).
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// How to print.
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    format: Output,
+}
+
+/// A cost that may be infinite.
+fn cost(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(cost) if cost > 0.0 => Ok(cost),
+        _ => Err("give a positive number, or `inf`".to_owned()),
+    }
+}
+
+fn finite_cost(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(cost) if cost > 0.0 && cost.is_finite() => Ok(cost),
+        _ => Err("give a positive number".to_owned()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if (0.0..=1.0).contains(&rate) => Ok(rate),
+        _ => Err("give a number from 0 to 1".to_owned()),
+    }
+}
+
+impl ValueEnum for Strategy {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Thesis, Self::Membership]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(match self {
+            Self::Thesis => clap::builder::PossibleValue::new("thesis")
+                .help("Algorithms 4 to 6 of the dissertation's chapter 5"),
+            Self::Membership => {
+                clap::builder::PossibleValue::new("membership").help("the same without comparisons")
+            }
+        })
+    }
+}
+
+impl ValueEnum for Order {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Ordered, Self::Random]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(match self {
+            Self::Ordered => clap::builder::PossibleValue::new("ordered")
+                .help("by prefixes and extensions, as for Tomita's languages in chapter 5"),
+            Self::Random => clap::builder::PossibleValue::new("random")
+                .help("fixed and random, a tenth of the pairs incomparable"),
+        })
+    }
+}
+
+impl ValueEnum for Counterexamples {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Shortest, Self::Random]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(match self {
+            Self::Shortest => clap::builder::PossibleValue::new("shortest").help("a shortest word"),
+            Self::Random => clap::builder::PossibleValue::new("random")
+                .help("any word of a random length, mostly up to 10"),
+        })
+    }
+}
 
 /// Runs the command.
-pub(crate) fn run(_args: Args) -> anyhow::Result<ExitCode> {
-    anyhow::bail!("not there yet")
+pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let target = target(args)?;
+    let alphabet = target.dfa().alphabet().clone();
+    let usual_bound = if args.error_rate > 0.0 { 8 } else { 64 };
+    let settings = Settings {
+        engine: EngineChoice::Auto,
+        max_states: usize::from(args.max_states.unwrap_or(usual_bound)),
+    };
+    let config = Config {
+        strategy: args.strategy,
+        membership_cost: args.membership_cost,
+        comparison_cost: args.comparison_cost,
+        seed: args.seed,
+        budget: BUDGET,
+    };
+    let class = DfaClass::new(alphabet.clone(), settings);
+    let mut learner = Learner::new(class, config, target.known().to_vec());
+    let mut teacher = ScriptedTeacher::new(
+        &target,
+        TeacherSettings {
+            order: args.teacher,
+            counterexamples: args.counterexample,
+            error_rate: args.error_rate,
+            seed: args.seed,
+        },
+    );
+    // Drawn only on a terminal, and only where the trace does not tell anyway.
+    let progress = if args.trace {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new_spinner()
+    };
+    progress.enable_steady_tick(Duration::from_millis(200));
+    let mut printed = Ok(());
+    let report = teach(
+        &mut learner,
+        &mut teacher,
+        args.max_questions,
+        process_cpu,
+        |asked| {
+            progress.set_message(format!("{} questions asked", asked.number));
+            if args.trace && printed.is_ok() {
+                printed = trace(args.format, &alphabet, asked);
+            }
+        },
+    );
+    progress.finish_and_clear();
+    printed?;
+    let report = report?;
+    if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
+        save(path, &target, args.seed, learned)?;
+    }
+    tell(args, &target, &report)?;
+    Ok(if report.learned.is_some() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(1)
+    })
+}
+
+/// The target of this name, or else of this file.
+fn target(args: &Args) -> anyhow::Result<Target> {
+    let path = PathBuf::from(&args.target);
+    let target = match Target::named(&args.target) {
+        Err(error @ TargetError::Unknown(_)) => {
+            // A path that is not there was more likely meant as a name.
+            if path.extension().is_none() && !path.exists() {
+                return Err(error.into());
+            }
+            let document = files::read_automaton(&path, None)?;
+            Target::automaton(&args.target, &document.dfa)
+        }
+        named => named?,
+    };
+    Ok(if args.no_empty_word {
+        target.without_known()
+    } else {
+        target
+    })
+}
+
+fn save(path: &Path, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Result<()> {
+    let document = Document {
+        dfa: learned.clone(),
+        name: Some(target.name().to_owned()),
+        provenance: Some(Provenance {
+            version: Some(env!("CARGO_PKG_VERSION").to_owned()),
+            seed: Some(seed),
+            digest: None,
+        }),
+    };
+    let format = path
+        .extension()
+        .map_or(Ok(Format::Json), |_| Format::choose(None, path, "--save"))?;
+    let text = files::render(&Content::Automaton(document), format)?;
+    files::write(path, &text).context("the learned automaton was not saved")
+}
+
+/// What `--format json` prints last.
+#[derive(Serialize)]
+struct Summary<'a> {
+    target: &'a str,
+    strategy: Strategy,
+    seed: u64,
+    equivalent: bool,
+    /// The number of states learned.
+    states: Option<usize>,
+    membership: u32,
+    comparison: u32,
+    equivalence: u32,
+    cost: f64,
+    dropped: u32,
+    hurried: u32,
+    question_ms: Milliseconds,
+    cpu_s: f64,
+}
+
+/// The CPU time that choosing a question took.
+#[derive(Serialize)]
+struct Milliseconds {
+    p50: f64,
+    p95: f64,
+    max: f64,
+}
+
+impl Milliseconds {
+    fn of(times: &[Duration]) -> Self {
+        let at = |percent| rounded(percentile(times, percent).as_secs_f64() * 1e3);
+        Self {
+            p50: at(50),
+            p95: at(95),
+            max: at(100),
+        }
+    }
+}
+
+/// To three places, as more would be noise.
+fn rounded(number: f64) -> f64 {
+    (number * 1e3).round() / 1e3
+}
+
+fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()> {
+    let counts = report.counts;
+    let times = Milliseconds::of(&report.question_times);
+    if args.format == Output::Json {
+        let summary = Summary {
+            target: target.name(),
+            strategy: args.strategy,
+            seed: args.seed,
+            equivalent: report.learned.is_some(),
+            states: report.learned.as_ref().map(Dfa::size),
+            membership: counts.membership,
+            comparison: counts.comparison,
+            equivalence: counts.equivalence,
+            cost: report.cost,
+            dropped: report.dropped,
+            hurried: report.hurried,
+            question_ms: times,
+            cpu_s: rounded(report.cpu.as_secs_f64()),
+        };
+        return output::line(serde_json::to_string(&summary)?);
+    }
+    match &report.learned {
+        Some(learned) => output::line(format!(
+            "learned: {} with {} states",
+            target.name(),
+            learned.size()
+        ))?,
+        None => output::line(format!(
+            "not learned: {} within {} questions; allow more by `--max-questions`",
+            target.name(),
+            args.max_questions
+        ))?,
+    }
+    output::line(format!(
+        "asked: {} membership queries, {} comparisons, {} equivalence queries",
+        counts.membership, counts.comparison, counts.equivalence
+    ))?;
+    output::line(format!(
+        "cost: {} (equivalence queries not counted)",
+        report.cost
+    ))?;
+    if report.dropped > 0 {
+        output::line(format!(
+            "dropped: {} answers that contradicted others",
+            report.dropped
+        ))?;
+    }
+    output::line(format!(
+        "CPU time: {} ms a question (median; 95 % within {} ms)",
+        times.p50, times.p95
+    ))
+}
+
+/// One line of the trace for programs.
+#[derive(Serialize)]
+struct Line<'a> {
+    question: u32,
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first: Option<Vec<&'a str>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second: Option<Vec<&'a str>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hypothesis: Option<&'a Dfa>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    word: Option<Vec<&'a str>>,
+    answer: &'static str,
+    #[serde(rename = "word", skip_serializing_if = "Option::is_none")]
+    counterexample: Option<Vec<&'a str>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<bool>,
+}
+
+fn trace(format: Output, alphabet: &Alphabet, asked: &Asked<'_, Word, Dfa>) -> anyhow::Result<()> {
+    let number = asked.number;
+    let answer = answer(asked.reply);
+    if format == Output::Text {
+        let spelled = |word| output::spelled(alphabet, word);
+        let question = match asked.question {
+            Question::Membership { atom } => format!("is {} acceptable?", spelled(atom)),
+            Question::Comparison { first, second } => {
+                format!(
+                    "which is better, {} or {}?",
+                    spelled(first),
+                    spelled(second)
+                )
+            }
+            Question::Equivalence { hypothesis } => {
+                format!("is it this automaton with {} states?", hypothesis.size())
+            }
+        };
+        let shown = match asked.reply {
+            Reply::Counterexample { atom, label } => {
+                let verb = if *label { "accepted" } else { "rejected" };
+                format!("{answer}: {} is {verb}", spelled(atom))
+            }
+            _ => answer.to_owned(),
+        };
+        return output::line(format!("{number}. {question} {shown}"));
+    }
+    let spell = |word| Some(alphabet.spell(word).collect());
+    let mut line = Line {
+        question: number,
+        kind: "",
+        first: None,
+        second: None,
+        hypothesis: None,
+        word: None,
+        answer,
+        counterexample: None,
+        label: None,
+    };
+    match asked.question {
+        Question::Membership { atom } => {
+            line.kind = "membership";
+            line.word = spell(atom);
+        }
+        Question::Comparison { first, second } => {
+            line.kind = "comparison";
+            line.first = spell(first);
+            line.second = spell(second);
+        }
+        Question::Equivalence { hypothesis } => {
+            line.kind = "equivalence";
+            line.hypothesis = Some(hypothesis);
+        }
+    }
+    if let Reply::Counterexample { atom, label } = asked.reply {
+        line.counterexample = spell(atom);
+        line.label = Some(*label);
+    }
+    output::line(serde_json::to_string(&line)?)
+}
+
+/// A reply's name in files and on the wire.
+fn answer<A>(reply: &Reply<A>) -> &'static str {
+    match reply {
+        Reply::Accept => "accept",
+        Reply::Reject => "reject",
+        Reply::Compared(Comparison::First) => "first",
+        Reply::Compared(Comparison::Second) => "second",
+        Reply::Compared(Comparison::Equal) => "equal",
+        Reply::Compared(Comparison::Incomparable) => "incomparable",
+        Reply::Correct => "correct",
+        Reply::Counterexample { .. } => "counterexample",
+        Reply::Skip => "skip",
+    }
 }

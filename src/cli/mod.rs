@@ -3,10 +3,13 @@
 //! Results go to stdout, progress and errors to stderr. The exit status is 0
 //! for done, 1 where the answer is "no", 2 for bad input or usage.
 
+mod bench;
 mod convert;
 mod equivalent;
+mod files;
 mod identify;
 mod learn;
+mod output;
 #[cfg(feature = "server")]
 mod serve;
 
@@ -43,16 +46,19 @@ enum Command {
     Equivalent(equivalent::Args),
     /// Convert automata and samples between file formats.
     Convert(convert::Args),
+    /// Run an experiment and write its tables.
+    Bench(bench::Args),
 }
 
 /// Parses the command line, runs the command, and reports what went wrong.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
-        Some(Command::Learn(args)) => learn::run(args),
-        Some(Command::Identify(args)) => identify::run(args),
-        Some(Command::Equivalent(args)) => equivalent::run(args),
-        Some(Command::Convert(args)) => convert::run(args),
+        Some(Command::Learn(args)) => learn::run(&args),
+        Some(Command::Identify(args)) => identify::run(&args),
+        Some(Command::Equivalent(args)) => equivalent::run(&args),
+        Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Serve(args)) => serve::run(args),
         #[cfg(feature = "server")]

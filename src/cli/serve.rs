@@ -1,12 +1,118 @@
-//! `memrep serve`.
+//! `memrep serve`: the pages and the API, from one file of sessions.
 
+use std::io::ErrorKind;
+use std::net::{IpAddr, SocketAddr};
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Duration;
+
+use anyhow::{Context as _, bail};
+use tokio::net::TcpListener;
+use tracing_subscriber::EnvFilter;
+
+use crate::server::{self, AppState};
+use crate::store::Sqlite;
+
+/// How long work that nobody waits for any more may go on at the end.
+const LAST_WORK: Duration = Duration::from_secs(1);
 
 /// Arguments of `memrep serve`.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {}
+#[command(after_help = "Examples:
+  memrep serve
+  memrep serve --addr 127.0.0.1:9000 --database lab.db
+  RUST_LOG=debug memrep serve")]
+pub(crate) struct Args {
+    /// The address and port to serve on; port 0 takes a free one.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    addr: SocketAddr,
+    /// The SQLite file in which sessions are kept; created if there is none.
+    #[arg(long, value_name = "PATH", default_value = "memrep.db")]
+    database: PathBuf,
+}
 
 /// Runs the command.
-pub(crate) fn run(_args: Args) -> anyhow::Result<ExitCode> {
-    anyhow::bail!("not there yet")
+pub(crate) fn run(args: Args) -> anyhow::Result<ExitCode> {
+    refuse_public(args.addr.ip())?;
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn"));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .init();
+    // The port first: a second server on the same port must not touch the file.
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .context("the async runtime cannot start")?;
+    let served = runtime.block_on(serve(args));
+    runtime.shutdown_timeout(LAST_WORK);
+    served.map(|()| ExitCode::SUCCESS)
+}
+
+async fn serve(args: Args) -> anyhow::Result<()> {
+    let listener = match TcpListener::bind(args.addr).await {
+        Ok(listener) => listener,
+        Err(error) if error.kind() == ErrorKind::AddrInUse => bail!(
+            "port {} is in use, perhaps by another memrep: stop that program, or choose another port with --addr {}:0",
+            args.addr.port(),
+            args.addr.ip()
+        ),
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => bail!(
+            "port {} needs special rights: choose one above 1023 with --addr",
+            args.addr.port()
+        ),
+        Err(error) => {
+            return Err(error).context(format!(
+                "cannot serve on {}: choose another address with --addr",
+                args.addr
+            ));
+        }
+    };
+    let store = Sqlite::open(&args.database)?;
+    let at = listener.local_addr().context("the address is unknown")?;
+    let stop = stop_signal()?;
+    println!("memrep is at http://{at}/");
+    println!(
+        "Sessions are kept in {}. Stop with Ctrl+C.",
+        args.database.display()
+    );
+    server::run(listener, AppState::new(Arc::new(store)), stop)
+        .await
+        .context("the server stopped")
+}
+
+/// There is no sign-in yet: whoever reaches the port can read and answer.
+fn refuse_public(address: IpAddr) -> anyhow::Result<()> {
+    if !address.is_loopback() {
+        bail!(
+            "{address} can be reached from other machines, and there is no sign-in yet: serve on 127.0.0.1, and reach it from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)"
+        );
+    }
+    Ok(())
+}
+
+/// Resolves at Ctrl+C, and where there are signals at SIGTERM.
+#[cfg(unix)]
+fn stop_signal() -> anyhow::Result<impl Future<Output = ()> + Send + 'static> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut interrupt = signal(SignalKind::interrupt()).context("no handler for SIGINT")?;
+    let mut terminate = signal(SignalKind::terminate()).context("no handler for SIGTERM")?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}
+
+/// Resolves at Ctrl+C.
+#[cfg(not(unix))]
+fn stop_signal() -> anyhow::Result<impl Future<Output = ()> + Send + 'static> {
+    Ok(async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            // No handler: only the operating system can stop us.
+            std::future::pending::<()>().await;
+        }
+    })
 }

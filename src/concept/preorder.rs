@@ -20,9 +20,9 @@ struct Edge {
 /// The preference order as far as facts tell it, and the labels that follow
 /// under Definition 5.1.1.
 ///
-/// An incomparable pair is remembered so that it need not be asked again, also
-/// between atoms known to be equal to the two. It never contradicts anything:
-/// a person who cannot tell has claimed nothing.
+/// An incomparable pair is remembered so that neither it nor any pair that is
+/// incomparable because of it is asked. It never contradicts anything: a person
+/// who cannot tell has claimed nothing.
 #[derive(Clone, Debug)]
 pub struct Preorder<A> {
     ids: BTreeMap<A, usize>,
@@ -76,14 +76,15 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
     /// Whether the facts imply that `atom` is accepted or rejected.
     pub fn label(&self, atom: &A) -> Option<bool> {
         let &node = self.ids.get(atom)?;
+        let around = Around::new(self, node);
         let labelled = |reached: &[bool], accepted: bool| {
             self.labels
                 .iter()
                 .any(|&(node, label, _)| label == accepted && reached[node])
         };
-        if labelled(&self.closure(node, Direction::Down), true) {
+        if labelled(&around.below, true) {
             Some(true)
-        } else if labelled(&self.closure(node, Direction::Up), false) {
+        } else if labelled(&around.above, false) {
             Some(false)
         } else {
             None
@@ -96,24 +97,30 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
             return Some(Comparison::Equal);
         }
         let (&first, &second) = (self.ids.get(first)?, self.ids.get(second)?);
-        let (above_first, above_second) = (
-            self.closure(first, Direction::Up),
-            self.closure(second, Direction::Up),
-        );
-        match (above_first[second], above_second[first]) {
+        let first = Around::new(self, first);
+        let second = Around::new(self, second);
+        match (first.above[second.node], second.above[first.node]) {
             (true, true) => Some(Comparison::Equal),
             (true, false) => Some(Comparison::Second),
             (false, true) => Some(Comparison::First),
-            (false, false) => {
-                // Incomparable to an atom is incomparable to all its equals.
-                let firsts = self.closure(first, Direction::Equal);
-                let seconds = self.closure(second, Direction::Equal);
-                self.incomparable
-                    .iter()
-                    .any(|&(a, b)| (firsts[a] && seconds[b]) || (firsts[b] && seconds[a]))
-                    .then_some(Comparison::Incomparable)
-            }
+            (false, false) => (self.excludes(&first, &second) && self.excludes(&second, &first))
+                .then_some(Comparison::Incomparable),
         }
+    }
+
+    /// Whether `lower ≼ upper` would make two incomparable atoms comparable, or
+    /// put an accepted atom below a rejected one.
+    fn excludes(&self, lower: &Around, upper: &Around) -> bool {
+        let between = |x: usize, y: usize| lower.below[x] && upper.above[y];
+        let labelled = |accepted| {
+            let labels = self.labels.iter();
+            labels
+                .filter(move |(_, label, _)| *label == accepted)
+                .map(|&(node, ..)| node)
+        };
+        let mut pairs = self.incomparable.iter();
+        pairs.any(|&(x, y)| between(x, y) || between(y, x))
+            || labelled(true).any(|x| labelled(false).any(|y| between(x, y)))
     }
 
     /// The simplest atom that was given this label itself, for which `fits`.
@@ -202,24 +209,17 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
         });
     }
 
-    /// The nodes that are reached from `start`, itself included.
-    fn closure(&self, start: usize, direction: Direction) -> Vec<bool> {
+    /// The nodes that are reached from `start` by going up, or down; `start`
+    /// itself is one.
+    fn closure(&self, start: usize, up: bool) -> Vec<bool> {
         let mut reached = vec![false; self.ids.len()];
         reached[start] = true;
         let mut open = vec![start];
         while let Some(node) = open.pop() {
-            let leaving = match direction {
-                Direction::Down => &self.below[node],
-                Direction::Up | Direction::Equal => &self.above[node],
-            };
-            for &edge in leaving {
+            let edges = if up { &self.above } else { &self.below };
+            for &edge in &edges[node] {
                 let edge = self.edges[edge];
-                let next = match direction {
-                    Direction::Down => edge.from,
-                    Direction::Up => edge.to,
-                    Direction::Equal if edge.strict => continue,
-                    Direction::Equal => edge.to,
-                };
+                let next = if up { edge.to } else { edge.from };
                 if !reached[next] {
                     reached[next] = true;
                     open.push(next);
@@ -322,15 +322,21 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
     }
 }
 
-/// Which way a closure goes.
-#[derive(Clone, Copy)]
-enum Direction {
-    /// To better atoms.
-    Up,
-    /// To worse atoms.
-    Down,
-    /// To atoms that answers call equal.
-    Equal,
+/// A node with all that is known to be at most, and at least, as good.
+struct Around {
+    node: usize,
+    below: Vec<bool>,
+    above: Vec<bool>,
+}
+
+impl Around {
+    fn new<A: Clone + Ord + Hash>(order: &Preorder<A>, node: usize) -> Self {
+        Self {
+            node,
+            below: order.closure(node, false),
+            above: order.closure(node, true),
+        }
+    }
 }
 
 /// The cheapest known way to a node.

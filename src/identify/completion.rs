@@ -5,7 +5,7 @@ use automata::{Alphabet, Dfa};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::partial::{NONE, Partial};
+use super::partial::NONE;
 
 /// As many assignments of tied outputs as are listed; beyond, they are counted
 /// as this many and drawn one state at a time.
@@ -30,20 +30,24 @@ pub(crate) struct Leaf {
 pub(crate) type Table = (Vec<u32>, Vec<bool>);
 
 impl Leaf {
-    /// The leaf at which a search stands.
-    pub(crate) fn new(partial: &Partial<'_>) -> Self {
-        let output: Box<[_]> = (0..partial.used()).map(|s| partial.output(s)).collect();
-        let mut implications: Vec<_> = partial.open_implications().collect();
+    /// The leaf at which a search stands: its table with [`NONE`] for free
+    /// edges, its outputs where they are decided, and the implications between
+    /// those that are not.
+    pub(crate) fn new(
+        delta: Box<[u32]>,
+        output: Box<[Option<bool>]>,
+        mut implications: Vec<(u32, u32)>,
+    ) -> Self {
         implications.sort_unstable();
         implications.dedup();
         let is_tied = |state: u32| {
             (implications.iter()).any(|&(source, target)| source == state || target == state)
         };
-        let (tied, loose) = (0..partial.used())
+        let (tied, loose) = (0..output.len() as u32)
             .filter(|&state| output[state as usize].is_none())
             .partition(|&state| is_tied(state));
         let mut leaf = Self {
-            delta: partial.delta().into(),
+            delta,
             output,
             loose,
             tied,

@@ -1,10 +1,12 @@
 //! The plain enumerator: depth-first search over canonically numbered automata.
 //!
 //! States are numbered in the order of their first use and the next edge is the
-//! undefined one at which most of the prefix tree waits for every possible
-//! target (fail first), so every automaton is met once. This beats SAT by an order of magnitude up to about 8
-//! states; its time grows with `states^(states * symbols)` in the worst case, so
-//! it stops at a budget of nodes.
+//! undefined one that is likely to fail first, so every automaton is met once.
+//! Small automata grow from words that are placed one by one ([`Partial`]),
+//! larger ones from a prefix tree that is folded ([`Merged`]), where a step takes
+//! ten times as long and saves up to a thousand. This beats SAT by one to three
+//! orders of magnitude; as its time grows with `states^(states * symbols)` in
+//! the worst case, it stops at a budget.
 
 use std::collections::BTreeSet;
 
@@ -13,22 +15,28 @@ use rand_chacha::ChaCha8Rng;
 
 use super::completion::{Leaf, Table, canonical};
 use super::engine::{Engine, Query, Verdict};
+use super::growing::Growing;
 use super::instance::Instance;
-use super::partial::{Mark, Partial};
+use super::merged::Merged;
+use super::partial::Partial;
 use crate::evidence::Budget;
 
 /// Nodes after which a listing gives way to random dives, if it has found
 /// [`SPARSE`] leaves.
 const LISTING: u64 = 3_000;
 /// With fewer leaves, it goes on for so many more nodes.
-const SPARSE_LISTING: u64 = 20_000;
-/// A few hundred leaves in [`LISTING`] nodes: dives then find one in about 100
-/// nodes.
-const SPARSE: usize = 300;
+const SPARSE_LISTING: u64 = 12_000;
+/// With that many leaves in [`LISTING`] nodes, dives find one in about 200 nodes.
+const SPARSE: usize = 150;
 /// Nodes that the dives of one search may take together.
-const DIVES: u64 = 3_000;
+const DIVES: u64 = 4_000;
 /// Nodes that listing goes on for at a time where dives found too few.
 const FINISHING: u64 = 20_000;
+
+/// The largest number of states for which words are placed one by one, unless
+/// that finds nothing soon: listing a version space is then faster. Beyond, and
+/// where nearly everything is refuted, folding is.
+const PLACED_STATES: usize = 8;
 
 /// The enumerator. It keeps nothing between searches.
 #[derive(Debug, Default)]
@@ -36,84 +44,107 @@ pub(crate) struct Enumerator;
 
 impl Engine for Enumerator {
     fn search(&mut self, query: &Query<'_>, budget: &mut Budget) -> Verdict {
-        let contradictory = || Verdict::None {
+        let Some(instance) = Instance::new(query.problem, query.standing) else {
+            return Verdict::None {
+                core: query.standing.to_vec(),
+            };
+        };
+        // A small version space is listed, and then drawn from evenly.
+        if query.states <= PLACED_STATES {
+            let mut leaves = Leaves::default();
+            let mut listing = Walk::<Partial<'_>>::new(&instance, query.states);
+            let ended = leaves.gather(&mut listing, LISTING, budget);
+            if ended || leaves.len() > 0 {
+                return answer(&instance, query, leaves, listing, ended, budget);
+            }
+        }
+        let mut leaves = Leaves::default();
+        let mut listing = Walk::<Merged<'_>>::new(&instance, query.states);
+        let ended = leaves.gather(&mut listing, LISTING, budget);
+        answer(&instance, query, leaves, listing, ended, budget)
+    }
+}
+
+/// Answers the query, given the first leaves of a listing and whether these are
+/// all.
+fn answer<'a, G: Growing<'a>>(
+    instance: &'a Instance,
+    query: &Query<'_>,
+    mut leaves: Leaves,
+    mut listing: Walk<'a, G>,
+    mut ended: bool,
+    budget: &mut Budget,
+) -> Verdict {
+    let mut rng = ChaCha8Rng::seed_from_u64(query.seed);
+    if !ended && leaves.len() < SPARSE {
+        // Dives would mostly miss.
+        ended = leaves.gather(&mut listing, SPARSE_LISTING, budget);
+    }
+    if !ended && leaves.len() == 0 {
+        // A hard one: to the first leaf, whatever it takes.
+        match listing.descend(&mut Limits::units(u64::MAX), budget, None) {
+            Reached::Leaf => leaves.push(listing.leaf()),
+            Reached::End => ended = true,
+            Reached::Limit => return Verdict::OverBudget,
+        }
+    }
+    if ended && leaves.len() == 0 {
+        return Verdict::None {
             core: query.standing.to_vec(),
         };
-        let Some(instance) = Instance::new(query.problem, query.standing) else {
-            return contradictory();
-        };
-        let mut rng = ChaCha8Rng::seed_from_u64(query.seed);
-        let mut listing = Walk::new(&instance, query.states);
-        let mut leaves = Leaves::default();
-
-        // A small version space is listed, and then drawn from evenly.
-        let mut ended = leaves.gather(&mut listing, LISTING, budget);
-        if !ended && leaves.len() < SPARSE {
-            // Dives would mostly miss.
-            ended = leaves.gather(&mut listing, SPARSE_LISTING, budget);
-        }
-        if !ended && leaves.len() == 0 {
-            // A hard one: to the first leaf, whatever it takes.
-            match listing.next_leaf(u64::MAX, budget) {
-                Reached::Leaf => leaves.push(listing.leaf()),
-                Reached::End => ended = true,
-                Reached::Limit => return Verdict::OverBudget,
+    }
+    let mut found = BTreeSet::new();
+    if !ended {
+        dive::<G>(instance, query, &mut found, &mut rng, budget);
+        while found.len() < query.count && !ended {
+            ended = leaves.gather(&mut listing, FINISHING, budget);
+            if leaves.total >= query.count as u128 || budget.is_spent() {
+                break;
             }
         }
-        if ended && leaves.len() == 0 {
-            return contradictory();
-        }
-        let mut found = BTreeSet::new();
-        if !ended {
-            dive(&instance, query, &mut found, &mut rng, budget);
-            while found.len() < query.count && !ended {
-                ended = leaves.gather(&mut listing, FINISHING, budget);
-                if leaves.total >= query.count as u128 || budget.is_spent() {
-                    break;
-                }
+    }
+    let mut automata = Vec::new();
+    if ended {
+        automata = leaves.draw(query.count, &mut rng);
+    } else {
+        automata.extend(found);
+        for table in leaves.draw(query.count, &mut rng) {
+            if automata.len() < query.count && !automata.contains(&table) {
+                automata.push(table);
             }
         }
-        let mut automata = Vec::new();
-        if ended {
-            automata = leaves.draw(query.count, &mut rng);
-        } else {
-            automata.extend(found);
-            for table in leaves.draw(query.count, &mut rng) {
-                if automata.len() < query.count && !automata.contains(&table) {
-                    automata.push(table);
-                }
-            }
-        }
-        let alphabet = query.problem.alphabet();
-        Verdict::Found {
-            complete: ended && leaves.total <= query.count as u128,
-            automata: automata
-                .iter()
-                .map(|table| canonical(alphabet, table))
-                .collect(),
-        }
+    }
+    let alphabet = query.problem.alphabet();
+    Verdict::Found {
+        complete: ended && leaves.total <= query.count as u128,
+        automata: automata
+            .iter()
+            .map(|table| canonical(alphabet, table))
+            .collect(),
     }
 }
 
 /// Random descents, each to its first leaf, until there are enough different
 /// automata or the nodes are spent.
-fn dive(
-    instance: &Instance,
+fn dive<'a, G: Growing<'a>>(
+    instance: &'a Instance,
     query: &Query<'_>,
     found: &mut BTreeSet<Table>,
     rng: &mut ChaCha8Rng,
     budget: &mut Budget,
 ) {
-    let mut walk = Walk::new(instance, query.states);
+    let mut walk = Walk::<G>::new(instance, query.states);
     // A descent that meets a barren subtree is better begun anew.
     let patience = 8 * (query.states * instance.symbols) as u64 + 32;
     let mut left = DIVES;
     while found.len() < query.count && left > 0 {
         walk.restart();
-        let mut nodes = patience.min(left);
-        let before = nodes;
-        let reached = walk.descend(&mut nodes, budget, Some(rng));
-        left -= (before - nodes).max(1);
+        let mut limits = Limits {
+            units: left,
+            edges: patience,
+        };
+        let reached = walk.descend(&mut limits, budget, Some(rng));
+        left = limits.units.min(left - 1);
         if reached == Reached::Leaf {
             found.insert(walk.leaf().draw(rng));
         }
@@ -130,32 +161,50 @@ enum Reached {
     Leaf,
     /// Everything has been seen.
     End,
-    /// The nodes or the budget are spent.
+    /// At the limits, or the budget is spent.
     Limit,
 }
 
+/// How far a walk may go.
+struct Limits {
+    /// Units of work.
+    units: u64,
+    /// Edges defined, whether they stayed so or not.
+    edges: u64,
+}
+
+impl Limits {
+    /// As far as these units of work go.
+    fn units(units: u64) -> Self {
+        Self {
+            units,
+            edges: u64::MAX,
+        }
+    }
+}
+
 /// A choice of a [`Walk`]: where one edge leads.
-struct Choice {
+struct Choice<M> {
     edge: u32,
     /// The targets to try are `values[next..end]`.
     next: u32,
     end: u32,
-    mark: Mark,
+    mark: M,
 }
 
 /// A depth-first walk through the partial automata that can be resumed.
-struct Walk<'a> {
-    partial: Partial<'a>,
-    choices: Vec<Choice>,
+struct Walk<'a, G: Growing<'a>> {
+    partial: G,
+    choices: Vec<Choice<G::Mark>>,
     values: Vec<u32>,
     /// Whether the partial automaton is a new one, to be looked at.
     fresh: bool,
 }
 
-impl<'a> Walk<'a> {
+impl<'a, G: Growing<'a>> Walk<'a, G> {
     fn new(instance: &'a Instance, states: usize) -> Self {
         Self {
-            partial: Partial::new(instance, states),
+            partial: G::start(instance, states),
             choices: Vec::with_capacity(states * instance.symbols),
             values: Vec::new(),
             fresh: true,
@@ -174,29 +223,22 @@ impl<'a> Walk<'a> {
 
     /// The leaf at which the walk stands.
     fn leaf(&self) -> Leaf {
-        Leaf::new(&self.partial)
-    }
-
-    /// The next leaf, in order.
-    fn next_leaf(&mut self, nodes: u64, budget: &mut Budget) -> Reached {
-        let mut nodes = nodes;
-        self.descend(&mut nodes, budget, None)
+        self.partial.leaf()
     }
 
     /// The next leaf, trying targets in random order if there is a generator.
     fn descend(
         &mut self,
-        nodes: &mut u64,
+        limits: &mut Limits,
         budget: &mut Budget,
         mut rng: Option<&mut ChaCha8Rng>,
     ) -> Reached {
         loop {
             if self.fresh {
                 self.fresh = false;
-                let Some(edge) = self.partial.tightest() else {
+                if !self.choose(rng.as_deref_mut()) {
                     return Reached::Leaf;
-                };
-                self.choose(edge, rng.as_deref_mut());
+                }
             }
             let Some(choice) = self.choices.last_mut() else {
                 return Reached::End;
@@ -209,24 +251,25 @@ impl<'a> Walk<'a> {
                 continue;
             }
             let target = self.values[choice.next as usize];
-            if *nodes == 0 || !budget.spend(1) {
+            if limits.units == 0 || limits.edges == 0 || budget.is_spent() {
                 return Reached::Limit;
             }
-            *nodes -= 1;
             choice.next += 1;
             self.fresh = self.partial.define(choice.edge, target);
+            let work = self.partial.take_work();
+            limits.units = limits.units.saturating_sub(work);
+            limits.edges -= 1;
+            // That it is spent is noticed before the next step.
+            let _ = budget.spend(work);
         }
     }
 
-    fn choose(&mut self, edge: u32, rng: Option<&mut ChaCha8Rng>) {
+    /// Takes up the next edge to define; `false` if there is none.
+    fn choose(&mut self, rng: Option<&mut ChaCha8Rng>) -> bool {
         let start = self.values.len();
-        let used = self.partial.used();
-        let partial = &self.partial;
-        self.values
-            .extend((0..used).filter(|&target| partial.may_lead(edge, target)));
-        if used < self.partial.limit() {
-            self.values.push(used);
-        }
+        let Some(edge) = self.partial.choose(&mut self.values) else {
+            return false;
+        };
         if let Some(rng) = rng {
             let values = &mut self.values[start..];
             for last in (1..values.len()).rev() {
@@ -239,6 +282,7 @@ impl<'a> Walk<'a> {
             end: self.values.len() as u32,
             mark: self.partial.mark(),
         });
+        true
     }
 }
 
@@ -260,11 +304,16 @@ impl Leaves {
         self.leaves.push(leaf);
     }
 
-    /// Goes on with a listing for some more nodes; whether it came to its end.
-    fn gather(&mut self, listing: &mut Walk<'_>, nodes: u64, budget: &mut Budget) -> bool {
-        let mut nodes = nodes;
+    /// Goes on with a listing for some more units; whether it came to its end.
+    fn gather<'a, G: Growing<'a>>(
+        &mut self,
+        listing: &mut Walk<'a, G>,
+        units: u64,
+        budget: &mut Budget,
+    ) -> bool {
+        let mut limits = Limits::units(units);
         loop {
-            match listing.descend(&mut nodes, budget, None) {
+            match listing.descend(&mut limits, budget, None) {
                 Reached::Leaf => self.push(listing.leaf()),
                 Reached::End => return true,
                 Reached::Limit => return false,

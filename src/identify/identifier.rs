@@ -13,13 +13,10 @@ use super::spread::{self, Spread, Weighted, Wish};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
-/// The nodes that [`EngineChoice::Auto`] gives the enumerator for one size, as
-/// far as [`ENUMERATED_STATES`]: about half a second.
-const ENUMERATED_NODES: u64 = 300_000;
-/// The size up to which the enumerator is usually faster than SAT.
-const ENUMERATED_STATES: usize = 8;
-/// Its nodes for larger sizes: enough where nearly everything is forced.
-const GLANCED_NODES: u64 = 10_000;
+/// The nodes that [`EngineChoice::Auto`] gives the enumerator for one size: a
+/// second or two. What it has not settled by then is left to SAT, which learns
+/// from its conflicts.
+const ENUMERATED_NODES: u64 = 3_000_000;
 
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
@@ -239,9 +236,8 @@ impl Engines {
             EngineChoice::Varisat => trusted(self.varisat(), query, budget),
             EngineChoice::Batsat => trusted(self.batsat(), query, budget),
             EngineChoice::Auto => {
-                let share = enumerator_share(query);
-                let mut nodes = Budget::new(share.min(budget.left()));
-                let given = nodes.left();
+                let given = enumerator_share(query, budget);
+                let mut nodes = Budget::new(given);
                 let verdict = trusted(&mut self.enumerator, query, &mut nodes);
                 let enough = budget.spend(given - nodes.left());
                 if !matches!(verdict, Verdict::OverBudget) || !enough || budget.is_spent() {
@@ -252,7 +248,11 @@ impl Engines {
                     return verdict;
                 }
                 // Budget is left, so the engine failed rather than the budget.
-                trusted(self.batsat(), query, budget)
+                let verdict = trusted(self.batsat(), query, budget);
+                if !matches!(verdict, Verdict::OverBudget) || budget.is_spent() {
+                    return verdict;
+                }
+                trusted(&mut self.enumerator, query, budget)
             }
         }
     }
@@ -268,16 +268,14 @@ impl Engines {
     }
 }
 
-/// The nodes the enumerator may take before SAT has its turn. It depends on
-/// nothing but the query's size, so that earlier searches leave no trace.
-fn enumerator_share(query: &Query<'_>) -> u64 {
+/// The nodes the enumerator may take before SAT has its turn: a function of the
+/// query and the budget, so that earlier searches leave no trace.
+fn enumerator_share(query: &Query<'_>, budget: &Budget) -> u64 {
     if query.problem.alphabet().len() == 1 {
         // One path that closes somewhere: a search as long as the automaton.
-        u64::MAX
-    } else if query.states <= ENUMERATED_STATES {
-        ENUMERATED_NODES
+        budget.left()
     } else {
-        GLANCED_NODES
+        ENUMERATED_NODES.min(budget.left() / 2)
     }
 }
 

@@ -192,3 +192,81 @@ impl Instance {
         self.partners[place]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use automata::{Alphabet, Word};
+
+    use super::*;
+    use crate::evidence::Fact;
+
+    fn word(text: &str) -> Word {
+        let symbol = |letter| automata::Symbol::new(usize::from(letter == 'b'));
+        text.chars().map(symbol).collect()
+    }
+
+    fn label(text: &str, accepted: bool) -> Fact<Word> {
+        Fact::Label {
+            atom: word(text),
+            accepted,
+        }
+    }
+
+    fn below(worse: &str, better: &str) -> Fact<Word> {
+        Fact::Below {
+            worse: word(worse),
+            better: word(better),
+        }
+    }
+
+    /// The instance of those facts that are marked, given in this order.
+    fn instance(facts: &[(bool, Fact<Word>)]) -> Option<Instance> {
+        let mut problem = Problem::new(Alphabet::new(["a", "b"]).expect("two names"));
+        let standing: Vec<FactId> = (facts.iter())
+            .filter_map(|(stands, fact)| problem.add(None, fact).filter(|_| *stands))
+            .collect();
+        Instance::new(&problem, &standing)
+    }
+
+    #[test]
+    fn neither_order_nor_retracted_facts_are_seen() {
+        let facts = [
+            (true, label("ab", true)),
+            (true, below("ba", "b")),
+            (true, below("aa", "bb")),
+        ];
+        let expected = instance(&facts).expect("consistent");
+        let mut others = facts.to_vec();
+        others.reverse();
+        others.insert(1, (false, label("bbbb", false)));
+        others.push((false, below("ab", "aaa")));
+        others.push((true, below("aa", "bb")));
+        assert_eq!(instance(&others), Some(expected));
+    }
+
+    #[test]
+    fn what_labels_settle_is_left_out() {
+        let settled = instance(&[
+            (true, label("a", true)),
+            // Forces `b`.
+            (true, below("a", "b")),
+            // Says nothing of `ab`, for `b` is accepted.
+            (true, below("ab", "b")),
+        ])
+        .expect("consistent");
+        let plain = instance(&[(true, label("a", true)), (true, label("b", true))]);
+        assert_eq!(Some(settled), plain);
+    }
+
+    #[test]
+    fn labels_that_meet_have_no_instance() {
+        let facts = [
+            (true, label("a", true)),
+            (true, below("a", "b")),
+            (true, below("b", "bb")),
+            (true, label("bb", false)),
+        ];
+        assert_eq!(instance(&facts), None);
+        assert!(instance(&facts[..3]).is_some());
+    }
+}

@@ -11,15 +11,21 @@ use super::{Learner, Question, Step, Strategy};
 use crate::concept::{ConceptClass, Failure};
 use crate::evidence::Budget;
 
-/// How many consistent concepts stand for all of them: the share that an answer
-/// leaves (Eq. 5.3) is then known to about `√(1/4·32)`, nine in a hundred, which
-/// is finer than the difference that the experts' temperature lets count.
+/// How many consistent concepts stand for all of them. The share that an answer
+/// leaves (Eq. 5.3) is then known to at most `√(1/(4·32))`, nine in a hundred,
+/// well below the experts' temperature.
 const SAMPLE: usize = 32;
 
 /// A step, and the simplest concept known to be consistent.
 pub(super) type Move<C> = (
     Step<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
     Option<<C as ConceptClass>::Concept>,
+);
+
+/// A question, and the bandit's round in which it was chosen.
+type Chosen<C> = (
+    Question<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
+    Option<Round>,
 );
 
 impl<C: ConceptClass> Learner<C> {
@@ -70,11 +76,7 @@ impl<C: ConceptClass> Learner<C> {
 
     /// A question that tells two concepts of the sample apart: two drawn
     /// uniformly, or, where nothing can be asked about these, any two.
-    fn question(
-        &self,
-        concepts: &[C::Concept],
-        random: &mut ChaCha8Rng,
-    ) -> Option<(Question<C::Atom, C::Concept>, Option<Round>)> {
+    fn question(&self, concepts: &[C::Concept], random: &mut ChaCha8Rng) -> Option<Chosen<C>> {
         let mut places: Vec<usize> = (0..concepts.len()).collect();
         places.shuffle(random);
         let pairs = places
@@ -101,11 +103,7 @@ impl<C: ConceptClass> Learner<C> {
     }
 
     /// Algorithm 5: lets the bandit choose between the candidates.
-    fn pull(
-        &self,
-        candidates: Candidates<C::Atom>,
-        random: &mut ChaCha8Rng,
-    ) -> Option<(Question<C::Atom, C::Concept>, Option<Round>)> {
+    fn pull(&self, candidates: Candidates<C::Atom>, random: &mut ChaCha8Rng) -> Option<Chosen<C>> {
         let config = &self.config;
         // Which of two atoms is shown first is drawn, so that the place says
         // nothing and a habit of choosing the first does no harm.

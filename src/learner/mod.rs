@@ -266,6 +266,10 @@ impl<C: ConceptClass> Learner<C> {
 
     /// The next move: a function of the configuration and the answers that
     /// stand (in the order in which they were recorded).
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "it is no iterator: the same move comes until it is answered"
+    )]
     pub fn next(&mut self) -> Step<C::Atom, C::Concept> {
         if let Some(step) = &self.next {
             return step.clone();

@@ -151,7 +151,7 @@ enum Place {
 }
 
 /// A number that differs for different words and seeds, but for chance: the
-/// finaliser of SplitMix64 over the symbols.
+/// finaliser of `SplitMix64` over the symbols.
 fn fingerprint(seed: u64, word: &Word) -> u64 {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,1 +1,155 @@
 //! Pages and API over sessions. Must not know SAT or encodings.
+//!
+//! [`app`] is the whole site as a service, [`run`] serves it. A request goes
+//! through the layers of [`app`], a handler in `api` or `pages`, and
+//! `teaching`, which is the only way to a session.
+
+mod api;
+mod assets;
+mod error;
+mod export;
+mod forms;
+mod guard;
+mod pages;
+mod teaching;
+mod views;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
+use axum::http::Uri;
+use axum::http::header::CONTENT_TYPE;
+use axum::middleware::from_fn;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use tokio::net::TcpListener;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::csrf::{CsrfLayer, ProtectionError};
+use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
+use tower_http::timeout::RequestBodyDeadlineLayer;
+use tower_http::trace::TraceLayer;
+
+use crate::store::Store;
+use error::{ApiError, PageError, WebError};
+use teaching::Teaching;
+
+/// The largest body of a form: 64 KiB.
+const FORM_LIMIT: usize = 64 * 1024;
+/// The largest body of an API request: 2 MiB.
+const API_LIMIT: usize = 2 * 1024 * 1024;
+/// How long a body may take to arrive.
+const BODY_DEADLINE: Duration = Duration::from_secs(30);
+/// How long requests in progress may take to finish once the server stops.
+const FAREWELL: Duration = Duration::from_secs(3);
+
+/// What all requests share.
+#[derive(Clone)]
+pub struct AppState {
+    teaching: Arc<Teaching>,
+}
+
+impl AppState {
+    /// A site over this store, in which as many sessions think at the same
+    /// time as the machine has cores.
+    pub fn new(store: Arc<dyn Store>) -> Self {
+        let width = std::thread::available_parallelism().map_or(2, usize::from);
+        Self {
+            teaching: Arc::new(Teaching::new(store, width)),
+        }
+    }
+}
+
+/// The whole site.
+pub fn app(state: AppState) -> Router {
+    let api = api::routes()
+        .layer(CatchPanicLayer::custom(|panic| {
+            ApiError(panicked(&panic)).into_response()
+        }))
+        .layer(DefaultBodyLimit::max(API_LIMIT));
+    let pages = pages::routes()
+        .route("/static/{name}", get(assets::get))
+        .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))
+        .method_not_allowed_fallback(async || PageError(WebError::NoMethod))
+        .layer(CatchPanicLayer::custom(|panic| {
+            PageError(panicked(&panic)).into_response()
+        }))
+        .layer(DefaultBodyLimit::max(FORM_LIMIT));
+    let same_site = CsrfLayer::new().with_rejection_response(|error: ProtectionError| {
+        tracing::info!(%error, "cross-site request refused");
+        ApiError(WebError::Foreign).into_response()
+    });
+    Router::new()
+        .nest("/api/v1", api)
+        .merge(pages)
+        .with_state(state)
+        .layer(RequestBodyDeadlineLayer::new(BODY_DEADLINE))
+        .layer(same_site)
+        .layer(from_fn(guard::host))
+        .layer(from_fn(guard::headers))
+        .layer(TraceLayer::new_for_http().make_span_with(span))
+        .layer(PropagateRequestIdLayer::x_request_id())
+        .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
+}
+
+/// What is logged of a request: the route, never the session's name in it.
+fn span(request: &Request) -> tracing::Span {
+    let route = request
+        .extensions()
+        .get::<MatchedPath>()
+        .map_or("unknown", MatchedPath::as_str);
+    let id = request
+        .headers()
+        .get("x-request-id")
+        .and_then(|id| id.to_str().ok())
+        .unwrap_or_default();
+    tracing::info_span!("request", method = %request.method(), route, id)
+}
+
+fn panicked(panic: &(dyn std::any::Any + Send)) -> WebError {
+    let cause = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("unknown panic");
+    WebError::internal(format!("panic: {cause}"))
+}
+
+/// Serves the site on `listener` until `shutdown` resolves; requests in
+/// progress then have three seconds to finish.
+///
+/// # Errors
+///
+/// If accepting connections fails.
+pub async fn run(
+    listener: TcpListener,
+    state: AppState,
+    shutdown: impl Future<Output = ()> + Send + 'static,
+) -> std::io::Result<()> {
+    let (stopping, stopped) = tokio::sync::oneshot::channel();
+    let server = axum::serve(listener, app(state)).with_graceful_shutdown(async move {
+        shutdown.await;
+        let _ = stopping.send(());
+    });
+    let farewell = async {
+        // An error means that the server ended by itself.
+        if stopped.await.is_ok() {
+            tokio::time::sleep(FAREWELL).await;
+        } else {
+            std::future::pending().await
+        }
+    };
+    tokio::select! {
+        result = async { server.await } => result,
+        () = farewell => {
+            tracing::warn!("stopped with requests unfinished; their sessions go on at the next start");
+            Ok(())
+        }
+    }
+}
+
+/// A response whose body is text of this type.
+fn typed(kind: &'static str, body: String) -> Response {
+    ([(CONTENT_TYPE, kind)], body).into_response()
+}

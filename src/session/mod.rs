@@ -1,1 +1,404 @@
-//! One teaching session: a fold over its log. Must not know how the log is stored.
+//! One teaching session: a fold over its append-only log.
+//!
+//! A [`Session`] is what its [`Event`]s say, in their order, and nothing else:
+//! the same log gives the same page on every machine. It is pure: it must not
+//! know how the log is stored, who asks, or what time it is.
+//!
+//! An answer goes `decide` → (append) → [`Session::apply`] → [`Session::think`]
+//! → (append) → [`Session::apply`]: what the learner makes of an answer is an
+//! entry of its own, so that it is computed once and shown for ever after.
+
+mod automaton;
+mod config;
+mod decide;
+mod event;
+mod reader;
+mod ready;
+mod task;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use automata::{Alphabet, Dfa, Word};
+
+pub use automaton::Automaton;
+pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
+pub use decide::{Decision, Refusal};
+pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
+pub use reader::{Fields, Malformed};
+pub use ready::{NAMES as READY_NAMES, offered, ready};
+pub use task::{
+    DEFAULT_STATES, Example, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD, SymbolText, Task,
+    read_word,
+};
+
+use crate::concept::DfaClass;
+use crate::evidence::AnswerId;
+use crate::identify::Settings;
+use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
+
+/// A question that was put at some time.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// The question.
+    pub question: Question<Word, Dfa>,
+    /// Whether the budget ended before the best one was found.
+    pub hurried: bool,
+    round: Option<Round>,
+}
+
+/// An answer that stands.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// The number of the question that it answers.
+    pub number: u32,
+    /// The answer.
+    pub reply: Reply<Word>,
+    /// What the learner did next, once it has; none for a mended answer.
+    then: Option<Position>,
+}
+
+/// Where a session stands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Position {
+    /// The learner has yet to [think](Session::think).
+    Thinking,
+    /// The question of this number is open.
+    Asking(u32),
+    /// Some standing answers contradict each other.
+    Conflict(Conflict),
+    /// The teacher agreed with this automaton.
+    Done(Dfa),
+}
+
+/// A log that cannot be folded: it was not written by this program, or by a
+/// version that means something else by it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("entry {entry} of the log cannot be read: {message}")]
+pub struct Corrupt {
+    /// The entry, from 0.
+    pub entry: u64,
+    /// What is wrong with it.
+    pub message: String,
+}
+
+/// One teaching session.
+pub struct Session {
+    task: Task,
+    setup: Setup,
+    alphabet: Alphabet,
+    learner: Learner<DfaClass>,
+    asked: BTreeMap<u32, Asked>,
+    standing: Vec<Standing>,
+    withdrawn: BTreeSet<u32>,
+    position: Position,
+    /// The answer whose outcome is next, if an answer is what led to it.
+    awaiting: Option<u32>,
+    entries: u64,
+}
+
+impl Session {
+    /// The first entry of a new session's log.
+    pub fn created(task: Task, setup: Setup) -> Event {
+        Event::Created {
+            log: LOG_VERSION,
+            memrep: env!("CARGO_PKG_VERSION").to_owned(),
+            task,
+            setup,
+        }
+    }
+
+    /// Folds a whole log.
+    ///
+    /// # Errors
+    ///
+    /// Names the first entry that makes no sense.
+    pub fn replay(events: &[Event]) -> Result<Self, Corrupt> {
+        let corrupt = |message: &str| Corrupt {
+            entry: 0,
+            message: message.to_owned(),
+        };
+        let Some((first, rest)) = events.split_first() else {
+            return Err(corrupt("the log is empty"));
+        };
+        let Event::Created {
+            log, task, setup, ..
+        } = first
+        else {
+            return Err(corrupt("it does not create the session"));
+        };
+        if *log != LOG_VERSION {
+            return Err(corrupt(&format!(
+                "it is of version {log}, and this memrep reads version {LOG_VERSION}: use the memrep that wrote it"
+            )));
+        }
+        let mut session = Self::new(task.clone(), setup.clone());
+        for event in rest {
+            session.apply(event)?;
+        }
+        Ok(session)
+    }
+
+    fn new(task: Task, setup: Setup) -> Self {
+        let alphabet = task.alphabet();
+        Self {
+            learner: fresh_learner(&task, &setup, &alphabet),
+            alphabet,
+            task,
+            setup,
+            asked: BTreeMap::new(),
+            standing: Vec::new(),
+            withdrawn: BTreeSet::new(),
+            position: Position::Thinking,
+            awaiting: None,
+            entries: 1,
+        }
+    }
+
+    /// Folds in the next entry of the log.
+    ///
+    /// # Errors
+    ///
+    /// If the entry makes no sense here; the session must not be used further.
+    pub fn apply(&mut self, event: &Event) -> Result<(), Corrupt> {
+        self.fold(event).map_err(|message| Corrupt {
+            entry: self.entries,
+            message,
+        })?;
+        self.entries += 1;
+        Ok(())
+    }
+
+    fn fold(&mut self, event: &Event) -> Result<(), String> {
+        match event {
+            Event::Created { .. } => Err("the session is created a second time".to_owned()),
+            Event::Asked {
+                number,
+                question,
+                round,
+                hurried,
+            } => {
+                self.expect_thinking()?;
+                if *number != self.next_number() {
+                    return Err(format!("question {number} comes out of turn"));
+                }
+                let question = question.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let asked = Asked {
+                    question,
+                    hurried: *hurried,
+                    round: round.clone(),
+                };
+                self.asked.insert(*number, asked);
+                self.arrive(Position::Asking(*number));
+                Ok(())
+            }
+            Event::Answered { number, reply } => {
+                if self.position != Position::Asking(*number) {
+                    return Err(format!("question {number} is not open"));
+                }
+                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                self.record(*number, &reply)?;
+                self.standing.push(Standing {
+                    number: *number,
+                    reply,
+                    then: None,
+                });
+                self.depart(Some(*number));
+                Ok(())
+            }
+            Event::Retracted { number } => {
+                self.withdraw(*number)?;
+                self.depart(None);
+                Ok(())
+            }
+            Event::Changed { number, reply } => {
+                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let Some(standing) = self.standing.iter_mut().find(|s| s.number == *number) else {
+                    return Err(format!("question {number} has no standing answer"));
+                };
+                standing.reply = reply;
+                standing.then = None;
+                self.rebuild()?;
+                self.depart(None);
+                Ok(())
+            }
+            Event::Enlarged { max_states } => {
+                self.task.max_states = *max_states;
+                self.rebuild()?;
+                self.depart(None);
+                Ok(())
+            }
+            Event::Conflict { conflict } => {
+                self.expect_thinking()?;
+                self.arrive(Position::Conflict(conflict.clone()));
+                Ok(())
+            }
+            Event::Done { hypothesis } => {
+                self.expect_thinking()?;
+                let hypothesis = hypothesis.read(&self.alphabet).map_err(|e| e.to_string())?;
+                self.arrive(Position::Done(hypothesis));
+                Ok(())
+            }
+        }
+    }
+
+    /// What the learner makes of the standing answers: the entry to append
+    /// while the session is [`Position::Thinking`], `None` otherwise.
+    ///
+    /// This is the only work here that takes time, at most the budget.
+    pub fn think(&mut self) -> Option<Event> {
+        if self.position != Position::Thinking {
+            return None;
+        }
+        Some(match self.learner.next() {
+            Step::Ask {
+                question,
+                round,
+                hurried,
+            } => Event::Asked {
+                number: self.next_number(),
+                question: QuestionText::of(&question, &self.alphabet),
+                round,
+                hurried,
+            },
+            Step::Conflict(contradiction) => Event::conflict(&contradiction),
+            Step::Done { hypothesis } => Event::Done {
+                hypothesis: Automaton::of(&hypothesis),
+            },
+        })
+    }
+
+    fn expect_thinking(&self) -> Result<(), String> {
+        match self.position {
+            Position::Thinking => Ok(()),
+            _ => Err("nothing led to it".to_owned()),
+        }
+    }
+
+    /// The learner has thought; the answer that led here remembers where to.
+    fn arrive(&mut self, position: Position) {
+        if let Some(number) = self.awaiting.take()
+            && let Some(standing) = self.standing.iter_mut().find(|s| s.number == number)
+        {
+            standing.then = Some(position.clone());
+        }
+        self.position = position;
+    }
+
+    /// Something is new; the learner has to think.
+    fn depart(&mut self, answer: Option<u32>) {
+        self.position = Position::Thinking;
+        self.awaiting = answer;
+    }
+
+    fn record(&mut self, number: u32, reply: &Reply<Word>) -> Result<(), String> {
+        let Some(asked) = self.asked.get(&number) else {
+            return Err(format!("question {number} was never asked"));
+        };
+        self.learner
+            .record(
+                AnswerId(number),
+                asked.question.clone(),
+                asked.round.clone(),
+                reply.clone(),
+            )
+            .map_err(|error| error.to_string())
+    }
+
+    fn withdraw(&mut self, number: u32) -> Result<(), String> {
+        let Some(place) = self.standing.iter().position(|s| s.number == number) else {
+            return Err(format!("question {number} has no standing answer"));
+        };
+        self.standing.remove(place);
+        self.withdrawn.insert(number);
+        if self.learner.retract(AnswerId(number)) {
+            Ok(())
+        } else {
+            Err(format!("the learner has no answer {number} to withdraw"))
+        }
+    }
+
+    /// A learner that was told the standing answers as they are now, in order.
+    fn rebuild(&mut self) -> Result<(), String> {
+        self.learner = fresh_learner(&self.task, &self.setup, &self.alphabet);
+        let replies: Vec<_> = self
+            .standing
+            .iter()
+            .map(|s| (s.number, s.reply.clone()))
+            .collect();
+        replies
+            .into_iter()
+            .try_for_each(|(number, reply)| self.record(number, &reply))
+    }
+
+    fn next_number(&self) -> u32 {
+        self.asked.last_key_value().map_or(1, |(last, _)| last + 1)
+    }
+
+    /// What is taught, with the bound on states as it is now.
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// How questions are chosen.
+    pub fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// The alphabet of the task's symbols.
+    pub fn alphabet(&self) -> &Alphabet {
+        &self.alphabet
+    }
+
+    /// Where the session stands.
+    pub fn position(&self) -> &Position {
+        &self.position
+    }
+
+    /// The number of log entries folded, which is the number of the next one.
+    pub fn entries(&self) -> u64 {
+        self.entries
+    }
+
+    /// A question by its number.
+    pub fn asked(&self, number: u32) -> Option<&Asked> {
+        self.asked.get(&number)
+    }
+
+    /// The standing answers, in the order in which they were given.
+    pub fn standing(&self) -> &[Standing] {
+        &self.standing
+    }
+
+    /// The standing answer to the question of this number.
+    pub fn answer_to(&self, number: u32) -> Option<&Standing> {
+        self.standing.iter().find(|s| s.number == number)
+    }
+
+    /// The standing answers by kind; skipped questions count nowhere.
+    pub fn counts(&self) -> Counts {
+        self.learner.counts()
+    }
+
+    /// The automaton on show: the one asked about, or the one agreed on.
+    ///
+    /// Between those there is none: the last one shown was refuted.
+    pub fn hypothesis(&self) -> Option<&Dfa> {
+        match &self.position {
+            Position::Done(hypothesis) => Some(hypothesis),
+            Position::Asking(number) => match &self.asked.get(number)?.question {
+                Question::Equivalence { hypothesis } => Some(hypothesis),
+                _ => None,
+            },
+            Position::Thinking | Position::Conflict(_) => None,
+        }
+    }
+}
+
+fn fresh_learner(task: &Task, setup: &Setup, alphabet: &Alphabet) -> Learner<DfaClass> {
+    let settings = Settings {
+        engine: crate::identify::EngineChoice::Auto,
+        max_states: task.max_states,
+    };
+    let class = DfaClass::new(alphabet.clone(), settings);
+    Learner::new(class, setup.config(), task.known(alphabet))
+}

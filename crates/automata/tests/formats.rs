@@ -245,8 +245,8 @@ fn what_a_format_cannot_say_is_refused() {
         },
     ]);
     let all = Dfa::new(alphabet, 0, vec![true], &[vec![0; 3]]).unwrap();
-    let large = Alphabet::new((0..513).map(|name| name.to_string())).unwrap();
-    let large = Dfa::new(large, 0, vec![true], &[vec![0; 513]]).unwrap();
+    let large = Alphabet::new((0..129).map(|name| name.to_string())).unwrap();
+    let large = Dfa::new(large, 0, vec![true], &[vec![0; 129]]).unwrap();
     let errors: Vec<WriteError> = vec![
         abbadingo::write(&preferences).unwrap_err(),
         dot::write(&all).unwrap_err(),

@@ -15,16 +15,15 @@ use std::fmt::Write as _;
 use super::WriteError;
 use crate::Dfa;
 
-/// The largest alphabet that is written. The labels of `n` symbols name `n`
-/// propositions each: here a megabyte, for all symbols that an alphabet may
-/// have a hundred.
-const MAX_SYMBOLS: usize = 512;
+/// The largest alphabet that is written. Every edge names every proposition, so
+/// a state of `n` symbols takes `n²` literals: here 16,384.
+const MAX_SYMBOLS: usize = 128;
 
 /// Writes an automaton.
 ///
 /// # Errors
 ///
-/// If the alphabet has more than 512 symbols.
+/// If the alphabet has more than 128 symbols.
 pub fn write(dfa: &Dfa) -> Result<String, WriteError> {
     let symbols = dfa.alphabet().len();
     if symbols > MAX_SYMBOLS {
@@ -44,24 +43,28 @@ pub fn write(dfa: &Dfa) -> Result<String, WriteError> {
     }
     text.push_str("\nacc-name: Buchi\nAcceptance: 1 Inf(0)\n");
     text.push_str("properties: trans-labels explicit-labels state-acc deterministic\n");
-    for (place, name) in dfa.alphabet().names().enumerate() {
-        let literals: Vec<String> = (0..symbols)
-            .map(|other| {
-                let not = if other == place { "" } else { "!" };
-                format!("{not}{other}")
-            })
-            .collect();
-        let _ = writeln!(text, "Alias: @{name} {}", literals.join(" & "));
-    }
+    // Aliases would say this once, but not every reader knows them on edges.
+    let labels: Vec<String> = (0..symbols).map(|place| one_hot(place, symbols)).collect();
     text.push_str("--BODY--\n");
     for state in dfa.states() {
         let mark = if dfa.is_accepting(state) { " {0}" } else { "" };
         let _ = writeln!(text, "State: {}{mark}", state.index());
         for symbol in dfa.alphabet().symbols() {
             let next = dfa.next(state, symbol).index();
-            let _ = writeln!(text, "[@{}] {next}", dfa.alphabet().name(symbol));
+            let _ = writeln!(text, "[{}] {next}", labels[symbol.index()]);
         }
     }
     text.push_str("--END--\n");
     Ok(text)
+}
+
+/// Proposition `place` holds and no other of `symbols`.
+fn one_hot(place: usize, symbols: usize) -> String {
+    let literals: Vec<String> = (0..symbols)
+        .map(|other| {
+            let not = if other == place { "" } else { "!" };
+            format!("{not}{other}")
+        })
+        .collect();
+    literals.join("&")
 }

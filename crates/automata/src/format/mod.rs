@@ -143,9 +143,9 @@ pub enum WriteError {
         /// The other's.
         second: String,
     },
-    /// HOA needs a label over all symbols for every symbol.
+    /// HOA names all symbols on every edge.
     #[error(
-        "the alphabet has {symbols} symbols, and the HOA writer stops at {max}: every symbol becomes a proposition that every label names; write JSON instead"
+        "the alphabet has {symbols} symbols, and the HOA writer stops at {max}: every symbol becomes a proposition that every edge names; write JSON instead"
     )]
     TooManySymbols {
         /// The number of symbols.

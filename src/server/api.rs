@@ -1,0 +1,253 @@
+//! The JSON API under `/api/v1`.
+
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{Path, Query, State};
+use axum::http::StatusCode;
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use serde_json::{Value, json};
+
+use super::AppState;
+use super::error::{ApiError, WebError};
+use super::export::{self, Format};
+use super::forms;
+use crate::session::{
+    Automaton, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session, Setup,
+    Task, ready,
+};
+use crate::store::SessionId;
+
+type Answer = Result<Json<Value>, ApiError>;
+type Body = Result<Bytes, BytesRejection>;
+
+/// All routes, relative to `/api/v1`.
+pub(crate) fn routes() -> Router<AppState> {
+    Router::new()
+        .route("/sessions", get(list).post(create))
+        .route("/sessions/{id}", get(state))
+        .route("/sessions/{id}/question", get(question))
+        .route("/sessions/{id}/answers", post(answer))
+        .route("/sessions/{id}/retractions", post(retract))
+        .route("/sessions/{id}/changes", post(change))
+        .route("/sessions/{id}/undo", post(undo))
+        .route("/sessions/{id}/bound", post(enlarge))
+        .route("/sessions/{id}/automaton", get(automaton))
+        .route("/sessions/{id}/log", get(log))
+        .fallback(async || ApiError(WebError::NoPage))
+        .method_not_allowed_fallback(async || ApiError(WebError::NoMethod))
+}
+
+fn read_body(body: Body) -> Result<Value, WebError> {
+    let bytes = body.map_err(|rejection| {
+        if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
+            WebError::TooLarge
+        } else {
+            WebError::Unreadable(rejection.body_text())
+        }
+    })?;
+    forms::json_body(&bytes)
+}
+
+pub(crate) fn session_id(text: &str) -> Result<SessionId, WebError> {
+    text.parse().map_err(|_| WebError::NoSession)
+}
+
+async fn create(State(app): State<AppState>, body: Body) -> Result<Response, ApiError> {
+    let body = read_body(body)?;
+    let fields = Fields::of(&body, "")?;
+    let mut known = vec!["task"];
+    known.extend(SETUP_KEYS);
+    fields.only(&known)?;
+    let task = match fields.get("task") {
+        Some(Value::String(name)) => ready(name).map_err(|error| error.under("task"))?,
+        Some(task) => Task::from_json(task).map_err(|error| error.under("task"))?,
+        None => {
+            return Err(Malformed::new(
+                "task",
+                "name a ready task, as in `\"tomita:5\"`, or give a task file's content",
+            )
+            .into());
+        }
+    };
+    let setup = Setup::from_json(&fields)?;
+    let id = app.teaching.create(task, setup).await?;
+    Ok((StatusCode::CREATED, Json(json!({"id": id.to_string()}))).into_response())
+}
+
+async fn list(State(app): State<AppState>) -> Answer {
+    let sessions: Vec<Value> = app
+        .teaching
+        .list(1000)
+        .await?
+        .into_iter()
+        .map(|listed| json!({"id": listed.id.to_string(), "created": listed.first.at, "changed": listed.last.at}))
+        .collect();
+    Ok(Json(json!({ "sessions": sessions })))
+}
+
+async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
+    let id = session_id(&id)?;
+    let view = move |session: &Session| {
+        let (state, open) = match session.position() {
+            Position::Thinking => ("thinking", None),
+            Position::Asking(number) => ("asking", Some(*number)),
+            Position::Conflict(_) => ("conflict", None),
+            Position::Done(_) => ("done", None),
+        };
+        let setup = serde_json::to_value(session.setup()).unwrap_or_default();
+        json!({
+            "id": id.to_string(),
+            "task": session.task(),
+            "setup": setup,
+            "state": state,
+            "question": open,
+            "counts": session.counts(),
+            "answers": session.standing().iter().map(|s| s.number).collect::<Vec<_>>(),
+            "hypothesis": session.hypothesis().map(Automaton::of),
+        })
+    };
+    Ok(Json(app.teaching.look(id, view).await?))
+}
+
+/// The next question, as `interfaces` fixes it.
+fn describe(session: &Session, position: &Position) -> Value {
+    match position {
+        Position::Thinking => json!({"kind": "thinking"}),
+        Position::Asking(number) => {
+            let Some(asked) = session.asked(*number) else {
+                return json!({"kind": "thinking"});
+            };
+            let question = QuestionText::of(&asked.question, session.alphabet());
+            let mut value = serde_json::to_value(question).unwrap_or_default();
+            value["number"] = (*number).into();
+            if asked.hurried {
+                value["hurried"] = true.into();
+            }
+            value
+        }
+        Position::Conflict(conflict) => {
+            let mut value = serde_json::to_value(conflict).unwrap_or_default();
+            value["kind"] = "conflict".into();
+            value
+        }
+        Position::Done(hypothesis) => {
+            json!({"kind": "done", "hypothesis": Automaton::of(hypothesis)})
+        }
+    }
+}
+
+async fn question(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
+    let id = session_id(&id)?;
+    let view = |session: &Session| describe(session, session.position());
+    Ok(Json(app.teaching.look(id, view).await?))
+}
+
+async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+    let id = session_id(&id)?;
+    let body = read_body(body)?;
+    let decide = move |session: &Session| {
+        let fields = Fields::of(&body, "")?;
+        fields.only(&["question", "answer", "word", "label"])?;
+        let number = forms::question_number(&fields)?;
+        let reply = forms::json_reply(&fields, session.alphabet())?;
+        Ok(session.answer(number, &reply)?)
+    };
+    Ok(Json(app.teaching.act(id, decide, describe).await?))
+}
+
+async fn change(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+    let id = session_id(&id)?;
+    let body = read_body(body)?;
+    let decide = move |session: &Session| {
+        let fields = Fields::of(&body, "")?;
+        fields.only(&["question", "answer", "word", "label"])?;
+        let number = forms::question_number(&fields)?;
+        let reply = forms::json_reply(&fields, session.alphabet())?;
+        Ok(session.change(number, &reply)?)
+    };
+    Ok(Json(app.teaching.act(id, decide, describe).await?))
+}
+
+async fn retract(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+    let id = session_id(&id)?;
+    let body = read_body(body)?;
+    let decide = move |session: &Session| {
+        let fields = Fields::of(&body, "")?;
+        fields.only(&["question"])?;
+        Ok(session.retract(forms::question_number(&fields)?)?)
+    };
+    Ok(Json(app.teaching.act(id, decide, describe).await?))
+}
+
+async fn undo(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
+    let id = session_id(&id)?;
+    let decide = |session: &Session| Ok(session.undo()?);
+    Ok(Json(app.teaching.act(id, decide, describe).await?))
+}
+
+async fn enlarge(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+    let id = session_id(&id)?;
+    let body = read_body(body)?;
+    let decide = move |session: &Session| {
+        let fields = Fields::of(&body, "")?;
+        fields.only(&["max_states"])?;
+        let bound = fields
+            .whole("max_states", 1, MAX_STATES)?
+            .ok_or_else(|| Malformed::new("max_states", "give the new bound on states"))?;
+        Ok(session.enlarge(bound)?)
+    };
+    Ok(Json(app.teaching.act(id, decide, describe).await?))
+}
+
+async fn automaton(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+    Query(query): Query<Vec<(String, String)>>,
+) -> Result<Response, ApiError> {
+    let id = session_id(&id)?;
+    let named = query
+        .iter()
+        .find(|(key, _)| key == "format")
+        .map_or("json", |(_, value)| value.as_str());
+    let format = Format::named(named)?;
+    let shown = app
+        .teaching
+        .look(id, |session| {
+            let hypothesis = session.hypothesis()?.clone();
+            Some((hypothesis, session.task().clone()))
+        })
+        .await?;
+    let (hypothesis, task) = shown.ok_or(WebError::NoAutomaton)?;
+    let name = export::file_name(&task, format);
+    let body = tokio::task::spawn_blocking(move || export::write(&hypothesis, &task, format))
+        .await
+        .map_err(WebError::internal)??;
+    Ok((
+        [
+            (CONTENT_TYPE, format.media_type().to_owned()),
+            (
+                CONTENT_DISPOSITION,
+                format!("attachment; filename=\"{name}\""),
+            ),
+        ],
+        body,
+    )
+        .into_response())
+}
+
+async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, ApiError> {
+    let entries = app.teaching.log(session_id(&id)?).await?;
+    let mut lines = String::new();
+    for entry in entries {
+        // The body is an object: its fields follow the store's own.
+        let rest = entry.body.strip_prefix('{').unwrap_or(&entry.body);
+        lines.push_str(&format!(
+            "{{\"seq\":{},\"at\":\"{}\",{rest}\n",
+            entry.seq, entry.at
+        ));
+    }
+    Ok(super::typed("application/jsonl; charset=utf-8", lines))
+}

@@ -1,0 +1,221 @@
+//! What can go wrong with a request: one type, shown as JSON by the API and as
+//! a page by the pages.
+
+use axum::Json;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde_json::json;
+
+use super::views;
+use crate::session::{Corrupt, Malformed, Refusal};
+
+/// Why a request was not granted. The cause of an internal error is logged and
+/// not sent.
+#[derive(Debug)]
+pub(crate) enum WebError {
+    /// No such page.
+    NoPage,
+    /// The page exists, but not for this method.
+    NoMethod,
+    /// No session of this name.
+    NoSession,
+    /// The session does not grant it now.
+    Refused(Refusal),
+    /// The request's content is wrong.
+    Malformed(Malformed),
+    /// The request's body is no JSON, or no form.
+    Unreadable(String),
+    /// The request's body is too large.
+    TooLarge,
+    /// The request came from another site.
+    Foreign,
+    /// No automaton is on show at the moment.
+    NoAutomaton,
+    /// The automaton is too large for this form.
+    TooLargeToShow(String),
+    /// The learner is still at work.
+    Slow,
+    /// The session's log cannot be read.
+    Corrupt(Corrupt),
+    /// Something that should not happen.
+    Internal(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl WebError {
+    pub(crate) fn internal(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Internal(error.into())
+    }
+
+    /// Whether the session is as it was.
+    pub(crate) fn is_refusal(&self) -> bool {
+        matches!(self, Self::Refused(_) | Self::Malformed(_))
+    }
+
+    pub(crate) fn status(&self) -> StatusCode {
+        match self {
+            Self::NoPage | Self::NoSession | Self::Refused(Refusal::Unknown { .. }) => {
+                StatusCode::NOT_FOUND
+            }
+            Self::NoMethod => StatusCode::METHOD_NOT_ALLOWED,
+            Self::Refused(
+                Refusal::Unfit { .. } | Refusal::NoCounterexample { .. } | Refusal::BadBound { .. },
+            )
+            | Self::Malformed(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            Self::Refused(_) | Self::NoAutomaton | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
+            Self::Unreadable(_) => StatusCode::BAD_REQUEST,
+            Self::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            Self::Foreign => StatusCode::FORBIDDEN,
+            Self::Slow => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
+        }
+    }
+
+    /// A stable name for programs.
+    fn code(&self) -> &'static str {
+        match self {
+            Self::NoPage => "not_found",
+            Self::NoMethod => "method_not_allowed",
+            Self::NoSession => "no_such_session",
+            Self::Refused(refusal) => match refusal {
+                Refusal::Closed { .. } => "question_closed",
+                Refusal::Unknown { .. } => "no_such_question",
+                Refusal::NotStanding { .. } => "no_standing_answer",
+                Refusal::Unfit { .. } => "answer_does_not_fit",
+                Refusal::NoCounterexample { .. } => "no_counterexample",
+                Refusal::Outdated { .. } => "hypothesis_outdated",
+                Refusal::NothingToUndo => "nothing_to_undo",
+                Refusal::BadBound { .. } => "bad_bound",
+            },
+            Self::Malformed(_) => "malformed",
+            Self::Unreadable(_) => "unreadable_body",
+            Self::TooLarge => "body_too_large",
+            Self::Foreign => "cross_site",
+            Self::NoAutomaton => "no_automaton",
+            Self::TooLargeToShow(_) => "automaton_too_large",
+            Self::Slow => "still_thinking",
+            Self::Corrupt(_) => "log_unreadable",
+            Self::Internal(_) => "internal",
+        }
+    }
+
+    /// The part of the request that is meant.
+    pub(crate) fn field(&self) -> Option<&str> {
+        match self {
+            Self::Malformed(malformed) if !malformed.path.is_empty() => Some(&malformed.path),
+            Self::Refused(refusal) => match refusal {
+                Refusal::Closed { .. } | Refusal::Unknown { .. } | Refusal::NotStanding { .. } => {
+                    Some("question")
+                }
+                Refusal::Unfit { .. } | Refusal::Outdated { .. } => Some("answer"),
+                Refusal::NoCounterexample { .. } => Some("label"),
+                Refusal::BadBound { .. } => Some("max_states"),
+                Refusal::NothingToUndo => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What happened and what to do, for people.
+    pub(crate) fn message(&self) -> String {
+        match self {
+            Self::NoPage => "There is nothing at this address: begin at the start page.".to_owned(),
+            Self::NoMethod => "This address does not take such a request.".to_owned(),
+            Self::NoSession => {
+                "There is no such session here: check the address, or begin a new one.".to_owned()
+            }
+            Self::Refused(refusal) => sentence(&refusal.to_string()),
+            Self::Malformed(malformed) => sentence(&malformed.message),
+            Self::Unreadable(message) => sentence(message),
+            Self::TooLarge => "The request is too large: send less at once.".to_owned(),
+            Self::Foreign => {
+                "The request came from another site, so nothing was done: use this site's own pages."
+                    .to_owned()
+            }
+            Self::NoAutomaton => {
+                "No rule is on show at the moment: go on answering until one is.".to_owned()
+            }
+            Self::TooLargeToShow(message) => sentence(message),
+            Self::Slow => {
+                "The next question is still being worked out. Your answer is kept: ask again in a moment."
+                    .to_owned()
+            }
+            Self::Corrupt(corrupt) => sentence(&format!(
+                "{corrupt}; nothing was changed, use the memrep that wrote this session"
+            )),
+            Self::Internal(_) => {
+                "Something went wrong in memrep, not with your request. Answers that were accepted are kept: try again, and if it stays, look at the server's output."
+                    .to_owned()
+            }
+        }
+    }
+
+    fn log(&self) {
+        match self {
+            Self::Internal(cause) => tracing::error!(%cause, "request failed"),
+            Self::Corrupt(cause) => tracing::error!(%cause, "log unreadable"),
+            Self::Slow => tracing::warn!("a question takes long"),
+            _ => {}
+        }
+    }
+}
+
+/// The same with a capital letter and a full stop.
+fn sentence(text: &str) -> String {
+    let mut chars = text.chars();
+    let Some(first) = chars.next() else {
+        return String::new();
+    };
+    let mut sentence: String = first.to_uppercase().chain(chars).collect();
+    if !sentence.ends_with(['.', '?', '!']) {
+        sentence.push('.');
+    }
+    sentence
+}
+
+/// An error as the API shows it.
+pub(crate) struct ApiError(pub(crate) WebError);
+
+/// An error as the pages show it.
+pub(crate) struct PageError(pub(crate) WebError);
+
+impl<E: Into<WebError>> From<E> for ApiError {
+    fn from(error: E) -> Self {
+        Self(error.into())
+    }
+}
+
+impl<E: Into<WebError>> From<E> for PageError {
+    fn from(error: E) -> Self {
+        Self(error.into())
+    }
+}
+
+impl From<Refusal> for WebError {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+impl From<Malformed> for WebError {
+    fn from(malformed: Malformed) -> Self {
+        Self::Malformed(malformed)
+    }
+}
+
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        self.0.log();
+        let mut error = json!({"code": self.0.code(), "message": self.0.message()});
+        if let Some(field) = self.0.field() {
+            error["field"] = field.into();
+        }
+        (self.0.status(), Json(json!({ "error": error }))).into_response()
+    }
+}
+
+impl IntoResponse for PageError {
+    fn into_response(self) -> Response {
+        self.0.log();
+        views::error_page(&self.0)
+    }
+}

@@ -1,0 +1,301 @@
+//! Reads what people and scripts send: JSON bodies and forms.
+
+use automata::{Alphabet, Word};
+use serde_json::{Value, json};
+
+use super::error::WebError;
+use crate::evidence::Comparison;
+use crate::learner::Reply;
+use crate::session::{Fields, MAX_WORD, Malformed, Task, read_word};
+
+/// The answers that the API knows, for people.
+const ANSWERS: &str = "`accept`, `reject`, `first`, `second`, `equal`, `incomparable`, `correct`, `counterexample` or `skip`";
+
+/// A JSON body.
+///
+/// # Errors
+///
+/// Says at which line and column it ceases to be JSON.
+pub(crate) fn json_body(body: &[u8]) -> Result<Value, WebError> {
+    if body.is_empty() {
+        return Err(WebError::Unreadable(
+            "the body is empty: send a JSON object".to_owned(),
+        ));
+    }
+    serde_json::from_slice(body)
+        .map_err(|error| WebError::Unreadable(format!("the body is not JSON: {error}")))
+}
+
+/// The question's number in a JSON body.
+pub(crate) fn question_number(fields: &Fields<'_>) -> Result<u32, Malformed> {
+    fields
+        .whole("question", 1, u32::MAX as usize)?
+        .map(|n| n as u32)
+        .ok_or_else(|| Malformed::new("question", "give the number of the question"))
+}
+
+/// The answer in a JSON body: the keys `answer`, `word` and `label`.
+pub(crate) fn json_reply(
+    fields: &Fields<'_>,
+    alphabet: &Alphabet,
+) -> Result<Reply<Word>, Malformed> {
+    let Some(answer) = fields.get("answer").and_then(Value::as_str) else {
+        return Err(Malformed::new("answer", format!("give one of {ANSWERS}")));
+    };
+    if answer != "counterexample" {
+        for key in ["word", "label"] {
+            if fields.get(key).is_some() {
+                return Err(Malformed::new(
+                    key,
+                    format!("`{key}` belongs to the answer `counterexample` alone: leave it out"),
+                ));
+            }
+        }
+        return plain_reply(answer);
+    }
+    let Some(word) = fields.get("word") else {
+        return Err(Malformed::new(
+            "word",
+            "give the word that the automaton treats wrongly, as an array of symbol names",
+        ));
+    };
+    let atom = read_word(word, "word", alphabet)?;
+    let Some(label) = fields.get("label").and_then(Value::as_bool) else {
+        return Err(Malformed::new(
+            "label",
+            "say `true` if the word is acceptable, `false` if it is not",
+        ));
+    };
+    Ok(Reply::Counterexample { atom, label })
+}
+
+/// The answers that need no word.
+pub(crate) fn plain_reply(answer: &str) -> Result<Reply<Word>, Malformed> {
+    Ok(match answer {
+        "accept" => Reply::Accept,
+        "reject" => Reply::Reject,
+        "first" => Reply::Compared(Comparison::First),
+        "second" => Reply::Compared(Comparison::Second),
+        "equal" => Reply::Compared(Comparison::Equal),
+        "incomparable" => Reply::Compared(Comparison::Incomparable),
+        "correct" => Reply::Correct,
+        "skip" => Reply::Skip,
+        _ => {
+            return Err(Malformed::new(
+                "answer",
+                format!("`{answer}` is no answer: give one of {ANSWERS}"),
+            ));
+        }
+    })
+}
+
+/// A form's fields, in the order sent.
+pub(crate) struct Form(Vec<(String, String)>);
+
+impl Form {
+    /// The fields of a form body.
+    pub(crate) fn new(fields: Vec<(String, String)>) -> Self {
+        Self(fields)
+    }
+
+    /// The first value of a field, empty where there is none.
+    pub(crate) fn text(&self, name: &str) -> &str {
+        self.0
+            .iter()
+            .find(|(key, _)| key == name)
+            .map_or("", |(_, value)| value.as_str())
+    }
+
+    /// Whether the form has the field at all.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.0.iter().any(|(key, _)| key == name)
+    }
+
+    /// The number of the question that is meant.
+    pub(crate) fn number(&self, name: &'static str) -> Result<u32, Malformed> {
+        self.text(name)
+            .trim()
+            .parse()
+            .map_err(|_| Malformed::new(name, format!("give a whole number as `{name}`")))
+    }
+
+    /// The answer: a plain one, or a counterexample where the form has a word.
+    pub(crate) fn reply(&self, alphabet: &Alphabet) -> Result<Reply<Word>, Malformed> {
+        if self.has("answer") {
+            return plain_reply(self.text("answer"));
+        }
+        let atom = typed_word(self.text("word"), "word", alphabet)?;
+        let label = match self.text("label") {
+            "true" => true,
+            "false" => false,
+            _ => {
+                return Err(Malformed::new(
+                    "label",
+                    "choose whether this should be accepted or not",
+                ));
+            }
+        };
+        Ok(Reply::Counterexample { atom, label })
+    }
+
+    /// The task of the "my own" form.
+    pub(crate) fn own_task(&self) -> Result<Task, Malformed> {
+        let names: Vec<&str> = self
+            .text("symbols")
+            .split(|c: char| c.is_whitespace() || c == ',' || c == ';')
+            .filter(|name| !name.is_empty())
+            .collect();
+        if names.is_empty() {
+            return Err(Malformed::new(
+                "symbols",
+                "name the things that can happen, with spaces between, as in `water dryer recharge`",
+            ));
+        }
+        let mut task = json!({ "symbols": names });
+        if !self.text("title").trim().is_empty() {
+            task["title"] = self.text("title").into();
+        }
+        // The alphabet is checked first, so that its faults are named before
+        // those of the examples.
+        let alphabet = Task::from_json(&task)?.alphabet();
+        let mut examples = Vec::new();
+        for (i, line) in self.text("examples").lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() {
+                continue;
+            }
+            let (label, rest) = example_label(line).ok_or_else(|| {
+                Malformed::new(
+                    "examples",
+                    format!(
+                        "line {}: begin with `+` for acceptable or `-` for not acceptable, as in `+ water dryer`",
+                        i + 1
+                    ),
+                )
+            })?;
+            let word = typed_word(rest, "examples", &alphabet).map_err(|e| {
+                Malformed::new("examples", format!("line {}: {}", i + 1, e.message))
+            })?;
+            let names: Vec<&str> = alphabet.spell(&word).collect();
+            examples.push(json!({"word": names, "label": label}));
+        }
+        task["examples"] = Value::Array(examples);
+        Task::from_json(&task)
+    }
+}
+
+fn example_label(line: &str) -> Option<(bool, &str)> {
+    if let Some(rest) = line.strip_prefix('+') {
+        return Some((true, rest));
+    }
+    // Hyphen, minus sign, en dash: what keyboards and documents make of it.
+    line.strip_prefix(['-', '\u{2212}', '\u{2013}'])
+        .map(|rest| (false, rest))
+}
+
+/// A word as people type it: names with spaces or commas between; where all
+/// names are single characters the spaces may be left out.
+fn typed_word(text: &str, field: &str, alphabet: &Alphabet) -> Result<Word, Malformed> {
+    let single = alphabet.names().all(|name| name.chars().count() == 1);
+    let mut symbols = Vec::new();
+    for token in text
+        .split(|c: char| c.is_whitespace() || c == ',' || c == '·')
+        .filter(|token| !token.is_empty())
+    {
+        if let Some(symbol) = alphabet.symbol(token) {
+            symbols.push(symbol);
+        } else if single
+            && let Some(several) = token
+                .chars()
+                .map(|c| alphabet.symbol(c.encode_utf8(&mut [0; 4])))
+                .collect::<Option<Vec<_>>>()
+        {
+            symbols.extend(several);
+        } else {
+            let names: Vec<&str> = alphabet.names().collect();
+            return Err(Malformed::new(
+                field,
+                format!("`{token}` is not a symbol: use {}", names.join(", ")),
+            ));
+        }
+    }
+    if symbols.len() > MAX_WORD {
+        return Err(Malformed::new(
+            field,
+            format!(
+                "this has {} symbols: at most {MAX_WORD} are possible",
+                symbols.len()
+            ),
+        ));
+    }
+    Ok(symbols.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(fields: &[(&str, &str)]) -> Form {
+        Form::new(
+            fields
+                .iter()
+                .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn words_are_read_as_people_type_them() {
+        let short = Alphabet::new(["R", "Y", "B"]).unwrap();
+        let expected = short.word(["R", "Y", "B"]).unwrap();
+        for text in ["R Y B", " RYB ", "R,Y,B", "RY B", "R · Y · B"] {
+            assert_eq!(
+                typed_word(text, "word", &short),
+                Ok(expected.clone()),
+                "{text}"
+            );
+        }
+        assert_eq!(typed_word("  ", "word", &short), Ok(Word::empty()));
+        let long = Alphabet::new(["a", "bc"]).unwrap();
+        let error = typed_word("abc", "word", &long).unwrap_err();
+        assert_eq!(error.message, "`abc` is not a symbol: use a, bc");
+    }
+
+    #[test]
+    fn the_own_form_becomes_a_task() {
+        let task = form(&[
+            ("symbols", "water, dryer recharge"),
+            ("examples", "+ water dryer\r\n\r\n- water\n+\n"),
+            ("title", " Tea "),
+        ])
+        .own_task()
+        .unwrap();
+        assert_eq!(task.title, "Tea");
+        assert_eq!(task.symbols.len(), 3);
+        let labels: Vec<bool> = task.examples.iter().map(|e| e.label).collect();
+        assert_eq!(labels, [true, false, true]);
+        for (fields, path, part) in [
+            (form(&[]), "symbols", "name the things"),
+            (form(&[("symbols", "a a")]), "symbols[1]", "twice"),
+            (
+                form(&[("symbols", "a"), ("examples", "+ a\nb")]),
+                "examples",
+                "line 2: begin",
+            ),
+            (
+                form(&[("symbols", "a"), ("examples", "+ b")]),
+                "examples",
+                "line 1: `b`",
+            ),
+            (
+                form(&[("symbols", "a"), ("examples", "+ a\n- a")]),
+                "examples[1]",
+                "other label",
+            ),
+        ] {
+            let error = fields.own_task().unwrap_err();
+            assert_eq!(error.path, path);
+            assert!(error.message.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The one way in and out of a session: decide, append durably, fold, think,
+//! append, show; on a bounded pool, one thing at a time for each session.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::{Mutex as AsyncMutex, Semaphore};
+
+use super::error::WebError;
+use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
+use crate::store::{Entry, Listed, SessionId, Store, StoreError};
+
+/// How many folded sessions are kept in memory; the others wait in the store.
+const KEPT: usize = 200;
+
+/// How long a page waits for the learner. The learner goes on after that, and
+/// a later page shows what came of it.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A session in memory; `None` until it is read from the store, or once its
+/// work has failed, so that the store's word counts again.
+type Slot = AsyncMutex<Option<Session>>;
+
+/// All sessions of a store, and the pool on which they think.
+pub(crate) struct Teaching {
+    store: Arc<dyn Store>,
+    loaded: Mutex<Loaded>,
+    permits: Arc<Semaphore>,
+}
+
+#[derive(Default)]
+struct Loaded {
+    slots: HashMap<SessionId, (u64, Arc<Slot>)>,
+    clock: u64,
+}
+
+impl Teaching {
+    /// Sessions of `store`, of which at most `width` think at the same time.
+    pub(crate) fn new(store: Arc<dyn Store>, width: usize) -> Self {
+        Self {
+            store,
+            loaded: Mutex::default(),
+            permits: Arc::new(Semaphore::new(width.max(1))),
+        }
+    }
+
+    /// Begins a session and puts its first question.
+    pub(crate) async fn create(&self, task: Task, setup: Setup) -> Result<SessionId, WebError> {
+        let id = SessionId::random().map_err(WebError::internal)?;
+        let store = Arc::clone(&self.store);
+        let first = Session::created(task, setup);
+        self.on_pool(move || {
+            let body = serde_json::to_string(&first).map_err(WebError::internal)?;
+            store.append(&id, 0, &body).map_err(WebError::internal)
+        })
+        .await?;
+        self.look(id, |_| ()).await?;
+        Ok(id)
+    }
+
+    /// What `view` shows of a session that has thought.
+    pub(crate) async fn look<T: Send + 'static>(
+        &self,
+        id: SessionId,
+        view: impl FnOnce(&Session) -> T + Send + 'static,
+    ) -> Result<T, WebError> {
+        let nothing = |_: &Session| Ok(Decision::Already(Position::Thinking));
+        self.act(id, nothing, |session, _| view(session)).await
+    }
+
+    /// Does what `decide` decides, durably, and shows where it led.
+    ///
+    /// `decide` is asked again where another writer was faster.
+    pub(crate) async fn act<T: Send + 'static>(
+        &self,
+        id: SessionId,
+        decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
+        view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
+    ) -> Result<T, WebError> {
+        let store = Arc::clone(&self.store);
+        let slot = self.slot(id);
+        let permits = Arc::clone(&self.permits);
+        let work = async move {
+            let mut held = slot.lock_owned().await;
+            let permit = permits.acquire_owned().await.map_err(WebError::internal)?;
+            // The guard and the permit go along: they are free again when the
+            // work is done, even if nobody waits for it any more.
+            tokio::task::spawn_blocking(move || {
+                let _permit = permit;
+                let mut session = match held.take() {
+                    Some(session) => session,
+                    None => load(&*store, &id)?,
+                };
+                match advance(&*store, &id, &mut session, decide) {
+                    Ok(position) => {
+                        let shown = view(&session, &position);
+                        *held = Some(session);
+                        Ok(shown)
+                    }
+                    Err(error) => {
+                        if error.is_refusal() {
+                            *held = Some(session);
+                        }
+                        Err(error)
+                    }
+                }
+            })
+            .await
+            .map_err(WebError::internal)?
+        };
+        match tokio::time::timeout(PATIENCE, work).await {
+            Ok(result) => result,
+            Err(_) => Err(WebError::Slow),
+        }
+    }
+
+    /// A session's log, as it lies in the store.
+    pub(crate) async fn log(&self, id: SessionId) -> Result<Vec<Entry>, WebError> {
+        let store = Arc::clone(&self.store);
+        self.on_pool(move || match store.read(&id) {
+            Ok(entries) if entries.is_empty() => Err(WebError::NoSession),
+            other => other.map_err(WebError::internal),
+        })
+        .await
+    }
+
+    /// The sessions last worked on.
+    pub(crate) async fn list(&self, most: usize) -> Result<Vec<Listed>, WebError> {
+        let store = Arc::clone(&self.store);
+        self.on_pool(move || store.list(most).map_err(WebError::internal))
+            .await
+    }
+
+    /// Runs what blocks but does not think.
+    async fn on_pool<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, WebError> + Send + 'static,
+    ) -> Result<T, WebError> {
+        tokio::task::spawn_blocking(work)
+            .await
+            .map_err(WebError::internal)?
+    }
+
+    fn slot(&self, id: SessionId) -> Arc<Slot> {
+        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
+        loaded.clock += 1;
+        let now = loaded.clock;
+        let slot = {
+            let entry = loaded.slots.entry(id).or_default();
+            entry.0 = now;
+            Arc::clone(&entry.1)
+        };
+        if loaded.slots.len() > KEPT {
+            // Only slots that nobody holds: two slots of one session would be
+            // two writers.
+            let oldest = loaded
+                .slots
+                .iter()
+                .filter(|(_, (_, slot))| Arc::strong_count(slot) == 1)
+                .min_by_key(|(_, (used, _))| *used)
+                .map(|(id, _)| *id);
+            if let Some(oldest) = oldest {
+                loaded.slots.remove(&oldest);
+            }
+        }
+        slot
+    }
+}
+
+fn load(store: &dyn Store, id: &SessionId) -> Result<Session, WebError> {
+    let entries = store.read(id).map_err(WebError::internal)?;
+    if entries.is_empty() {
+        return Err(WebError::NoSession);
+    }
+    let events = entries
+        .iter()
+        .map(|entry| {
+            serde_json::from_str(&entry.body).map_err(|error| Corrupt {
+                entry: entry.seq,
+                message: error.to_string(),
+            })
+        })
+        .collect::<Result<Vec<Event>, _>>()
+        .map_err(WebError::Corrupt)?;
+    Session::replay(&events).map_err(WebError::Corrupt)
+}
+
+/// Decides, appends and thinks; where that led.
+fn advance(
+    store: &dyn Store,
+    id: &SessionId,
+    session: &mut Session,
+    decide: impl Fn(&Session) -> Result<Decision, WebError>,
+) -> Result<Position, WebError> {
+    loop {
+        let already = match decide(session)? {
+            Decision::Append(event) => {
+                if !append(store, id, session, &event)? {
+                    continue;
+                }
+                None
+            }
+            Decision::Already(position) => Some(position),
+        };
+        while let Some(event) = session.think() {
+            append(store, id, session, &event)?;
+        }
+        return Ok(match already {
+            Some(position) if position != Position::Thinking => position,
+            _ => session.position().clone(),
+        });
+    }
+}
+
+/// Appends an entry to the store, then to the session; if another writer was
+/// faster, reads the session again instead and says `false`.
+fn append(
+    store: &dyn Store,
+    id: &SessionId,
+    session: &mut Session,
+    event: &Event,
+) -> Result<bool, WebError> {
+    let body = serde_json::to_string(event).map_err(WebError::internal)?;
+    match store.append(id, session.entries(), &body) {
+        Ok(()) => {
+            session.apply(event).map_err(WebError::Corrupt)?;
+            Ok(true)
+        }
+        Err(StoreError::Taken { .. }) => {
+            *session = load(store, id)?;
+            Ok(false)
+        }
+        Err(error) => Err(WebError::internal(error)),
+    }
+}

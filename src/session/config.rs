@@ -1,0 +1,170 @@
+//! How a session's learner is set up: read from a request, kept in the log.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::reader::{Fields, Malformed};
+use crate::learner::{Config, Strategy};
+
+/// The work that choosing one question may do, where nothing else is said: a
+/// few seconds at most.
+pub const DEFAULT_BUDGET: u64 = 2_000_000;
+
+/// The learner's configuration in a form that survives JSON, in which there is
+/// no infinite number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setup {
+    /// How questions are chosen.
+    pub strategy: Strategy,
+    /// The cost of a membership query.
+    pub membership_cost: f64,
+    /// The cost of a comparison; `None` (`"inf"` outside) where none is asked.
+    #[serde(with = "cost")]
+    pub comparison_cost: f64,
+    /// Decides every random choice.
+    pub seed: u64,
+    /// The work that choosing one question may do.
+    pub budget: u64,
+}
+
+/// The keys of [`Setup::from_json`].
+pub const KEYS: [&str; 4] = ["membership_cost", "comparison_cost", "strategy", "seed"];
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::Thesis,
+            membership_cost: 4.0,
+            comparison_cost: 1.0,
+            seed: 0,
+            budget: DEFAULT_BUDGET,
+        }
+    }
+}
+
+impl Setup {
+    /// Reads the optional keys of a request that creates a session.
+    ///
+    /// # Errors
+    ///
+    /// Names the key whose value cannot be taken, and what can.
+    pub fn from_json(fields: &Fields<'_>) -> Result<Self, Malformed> {
+        let usual = Self::default();
+        let membership_cost = match fields.get("membership_cost") {
+            None => usual.membership_cost,
+            Some(value) => positive(value).ok_or_else(|| {
+                Malformed::new("membership_cost", "give a number greater than 0, as in `4`")
+            })?,
+        };
+        let comparison_cost = match fields.get("comparison_cost") {
+            None => usual.comparison_cost,
+            Some(Value::String(text)) if text == "inf" => f64::INFINITY,
+            Some(value) => positive(value).ok_or_else(|| {
+                Malformed::new(
+                    "comparison_cost",
+                    "give a number greater than 0, as in `1`, or `\"inf\"` for no comparisons",
+                )
+            })?,
+        };
+        let strategy = match fields.get("strategy") {
+            None => usual.strategy,
+            Some(value) => serde_json::from_value(value.clone()).map_err(|_| {
+                Malformed::new(
+                    "strategy",
+                    "this strategy is unknown: give `\"thesis\"` or `\"membership\"`",
+                )
+            })?,
+        };
+        let seed = match fields.get("seed") {
+            None => usual.seed,
+            Some(value) => value.as_u64().ok_or_else(|| {
+                Malformed::new("seed", "give a whole number from 0 to 18446744073709551615")
+            })?,
+        };
+        Ok(Self {
+            strategy,
+            membership_cost,
+            comparison_cost,
+            seed,
+            budget: usual.budget,
+        })
+    }
+
+    /// What the learner is told.
+    pub fn config(&self) -> Config {
+        Config {
+            strategy: self.strategy,
+            membership_cost: self.membership_cost,
+            comparison_cost: self.comparison_cost,
+            seed: self.seed,
+            budget: self.budget,
+        }
+    }
+}
+
+fn positive(value: &Value) -> Option<f64> {
+    value.as_f64().filter(|n| n.is_finite() && *n > 0.0)
+}
+
+/// A cost as a number, or `"inf"`.
+mod cost {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    enum Form {
+        Finite(f64),
+        Named(String),
+    }
+
+    pub(super) fn serialize<S: Serializer>(cost: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        if cost.is_finite() {
+            Form::Finite(*cost).serialize(serializer)
+        } else {
+            Form::Named("inf".to_owned()).serialize(serializer)
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        match Form::deserialize(from)? {
+            Form::Finite(cost) => Ok(cost),
+            Form::Named(name) if name == "inf" => Ok(f64::INFINITY),
+            Form::Named(name) => Err(D::Error::custom(format!("`{name}` is no cost"))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn read(value: &Value) -> Result<Setup, Malformed> {
+        Setup::from_json(&Fields::of(value, "").unwrap())
+    }
+
+    #[test]
+    fn an_infinite_cost_survives_the_log() {
+        let setup =
+            read(&json!({"comparison_cost": "inf", "membership_cost": 2, "seed": u64::MAX}))
+                .unwrap();
+        let text = serde_json::to_string(&setup).unwrap();
+        assert!(text.contains("\"inf\""), "{text}");
+        assert_eq!(setup, serde_json::from_str(&text).unwrap());
+    }
+
+    #[test]
+    fn bad_values_are_named() {
+        for (input, path) in [
+            (json!({"membership_cost": 0}), "membership_cost"),
+            (json!({"membership_cost": "inf"}), "membership_cost"),
+            (json!({"comparison_cost": -1}), "comparison_cost"),
+            (json!({"comparison_cost": "many"}), "comparison_cost"),
+            (json!({"strategy": "psychic"}), "strategy"),
+            (json!({"seed": -3}), "seed"),
+        ] {
+            assert_eq!(read(&input).unwrap_err().path, path);
+        }
+    }
+}

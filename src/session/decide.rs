@@ -1,0 +1,246 @@
+//! What a person or a script wants to do, checked against where the session
+//! stands, and turned into the entry to append.
+
+use automata::Word;
+
+use super::event::{Event, ReplyText};
+use super::task::MAX_STATES;
+use super::{Position, Session};
+use crate::learner::{Question, Reply};
+
+/// What becomes of a wish.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Decision {
+    /// It is new: append this entry.
+    Append(Event),
+    /// It was done before: nothing to append, and this is where it led.
+    Already(Position),
+}
+
+/// Why a wish cannot be granted; the text says what to do instead.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// The question is not open any more.
+    #[error("question {number} is closed: {now}")]
+    Closed {
+        /// The question.
+        number: u32,
+        /// What is open instead.
+        now: String,
+    },
+    /// There has been no such question.
+    #[error("there is no question {number}: {now}")]
+    Unknown {
+        /// The question.
+        number: u32,
+        /// What is open instead.
+        now: String,
+    },
+    /// There is no standing answer of this number.
+    #[error("question {number} has no standing answer{}", if *withdrawn { ": it was withdrawn" } else { " yet" })]
+    NotStanding {
+        /// The question.
+        number: u32,
+        /// Whether there was one.
+        withdrawn: bool,
+    },
+    /// The answer belongs to another kind of question.
+    #[error("this answer does not fit question {number}, {kind}: answer {fitting}")]
+    Unfit {
+        /// The question.
+        number: u32,
+        /// Its kind, for people.
+        kind: &'static str,
+        /// The answers that fit.
+        fitting: &'static str,
+    },
+    /// The hypothesis already treats the word so.
+    #[error(
+        "this is no counterexample: the automaton shown already {} that word; give a word that it treats wrongly",
+        if *label { "accepts" } else { "rejects" }
+    )]
+    NoCounterexample {
+        /// The label that was claimed.
+        label: bool,
+    },
+    /// An automaton shown long ago cannot be declared right afterwards.
+    #[error(
+        "the automaton of question {number} was refuted by a later look: withdraw this answer instead, and the question comes again if it is still open"
+    )]
+    Outdated {
+        /// The question.
+        number: u32,
+    },
+    /// There is nothing to take back.
+    #[error("there is no answer to take back yet")]
+    NothingToUndo,
+    /// The bound cannot be set to this.
+    #[error("give a bound larger than {now} and at most {MAX_STATES}")]
+    BadBound {
+        /// The bound as it is.
+        now: usize,
+    },
+}
+
+impl Session {
+    /// Somebody answers the question of this number.
+    ///
+    /// # Errors
+    ///
+    /// If the question is not open, or the reply does not fit it.
+    pub fn answer(&self, number: u32, reply: &Reply<Word>) -> Result<Decision, Refusal> {
+        if *self.position() != Position::Asking(number) {
+            return match self.answer_to(number) {
+                Some(standing) if standing.reply == *reply => Ok(Decision::Already(
+                    standing
+                        .then
+                        .clone()
+                        .unwrap_or_else(|| self.position().clone()),
+                )),
+                _ => Err(self.not_open(number)),
+            };
+        }
+        self.check_fit(number, reply)?;
+        Ok(Decision::Append(Event::Answered {
+            number,
+            reply: ReplyText::of(reply, self.alphabet()),
+        }))
+    }
+
+    /// Somebody withdraws the answer to the question of this number.
+    ///
+    /// # Errors
+    ///
+    /// If it was never answered.
+    pub fn retract(&self, number: u32) -> Result<Decision, Refusal> {
+        if self.answer_to(number).is_some() {
+            Ok(Decision::Append(Event::Retracted { number }))
+        } else if self.withdrawn.contains(&number) {
+            Ok(Decision::Already(self.position().clone()))
+        } else {
+            Err(self.not_standing(number))
+        }
+    }
+
+    /// Somebody withdraws the last standing answer.
+    ///
+    /// # Errors
+    ///
+    /// If no answer stands.
+    pub fn undo(&self) -> Result<Decision, Refusal> {
+        match self.standing().last() {
+            Some(last) => self.retract(last.number),
+            None => Err(Refusal::NothingToUndo),
+        }
+    }
+
+    /// Somebody replaces the answer to the question of this number.
+    ///
+    /// # Errors
+    ///
+    /// If no answer stands there, or the new one does not fit.
+    pub fn change(&self, number: u32, reply: &Reply<Word>) -> Result<Decision, Refusal> {
+        let Some(standing) = self.answer_to(number) else {
+            return Err(self.not_standing(number));
+        };
+        if standing.reply == *reply {
+            return Ok(Decision::Already(self.position().clone()));
+        }
+        if *reply == Reply::Correct {
+            return Err(Refusal::Outdated { number });
+        }
+        self.check_fit(number, reply)?;
+        Ok(Decision::Append(Event::Changed {
+            number,
+            reply: ReplyText::of(reply, self.alphabet()),
+        }))
+    }
+
+    /// Somebody allows more states.
+    ///
+    /// # Errors
+    ///
+    /// If that is fewer than now, or beyond all bounds.
+    pub fn enlarge(&self, max_states: usize) -> Result<Decision, Refusal> {
+        let now = self.task().max_states;
+        if max_states == now {
+            return Ok(Decision::Already(self.position().clone()));
+        }
+        if max_states < now || max_states > MAX_STATES {
+            return Err(Refusal::BadBound { now });
+        }
+        Ok(Decision::Append(Event::Enlarged { max_states }))
+    }
+
+    /// Whether a reply fits the question of this number, which was asked.
+    fn check_fit(&self, number: u32, reply: &Reply<Word>) -> Result<(), Refusal> {
+        let Some(asked) = self.asked(number) else {
+            return Err(self.not_open(number));
+        };
+        let (kind, fitting) = match (&asked.question, reply) {
+            (Question::Membership { .. }, Reply::Accept | Reply::Reject | Reply::Skip)
+            | (Question::Comparison { .. }, Reply::Compared(_) | Reply::Skip)
+            | (Question::Equivalence { .. }, Reply::Correct) => return Ok(()),
+            (Question::Equivalence { hypothesis }, Reply::Counterexample { atom, label }) => {
+                return if hypothesis.accepts(atom) == *label {
+                    Err(Refusal::NoCounterexample { label: *label })
+                } else {
+                    Ok(())
+                };
+            }
+            (Question::Membership { .. }, _) => {
+                ("which judges one word", "`accept`, `reject` or `skip`")
+            }
+            (Question::Comparison { .. }, _) => (
+                "which compares two words",
+                "`first`, `second`, `equal`, `incomparable` or `skip`",
+            ),
+            (Question::Equivalence { .. }, _) => {
+                ("which shows an automaton", "`correct` or `counterexample`")
+            }
+        };
+        Err(Refusal::Unfit {
+            number,
+            kind,
+            fitting,
+        })
+    }
+
+    fn not_open(&self, number: u32) -> Refusal {
+        let now = self.describe_now();
+        if self.asked(number).is_some() {
+            Refusal::Closed { number, now }
+        } else {
+            Refusal::Unknown { number, now }
+        }
+    }
+
+    fn not_standing(&self, number: u32) -> Refusal {
+        if self.asked(number).is_none() {
+            return self.not_open(number);
+        }
+        Refusal::NotStanding {
+            number,
+            withdrawn: self.withdrawn.contains(&number),
+        }
+    }
+
+    /// What can be done now, as the end of a sentence.
+    fn describe_now(&self) -> String {
+        match self.position() {
+            Position::Thinking => "the next one is being chosen, ask again".to_owned(),
+            Position::Asking(number) => format!("question {number} is open now"),
+            Position::Conflict(conflict) if conflict.answers.is_empty() => {
+                "what was known at the start needs more states, allow more of them".to_owned()
+            }
+            Position::Conflict(conflict) => {
+                let numbers: Vec<String> = conflict.answers.iter().map(u32::to_string).collect();
+                format!(
+                    "the answers to {} cannot all be true, withdraw or change one of them",
+                    numbers.join(", ")
+                )
+            }
+            Position::Done(_) => "the session is done, undo to go on".to_owned(),
+        }
+    }
+}

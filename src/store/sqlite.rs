@@ -1,0 +1,214 @@
+//! The store in one SQLite file.
+
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior, params};
+
+use super::{Entry, Listed, SessionId, Store, StoreError};
+
+/// "MemR": says in the file's header whose it is.
+const APPLICATION: i64 = 0x4d65_6d52;
+/// The schema's version, in the file's header.
+const VERSION: i64 = 1;
+
+const SCHEMA: &str = "
+CREATE TABLE sessions (
+    id TEXT PRIMARY KEY
+) STRICT, WITHOUT ROWID;
+CREATE TABLE entries (
+    session TEXT NOT NULL REFERENCES sessions (id),
+    seq INTEGER NOT NULL CHECK (seq >= 0),
+    at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+    body TEXT NOT NULL,
+    PRIMARY KEY (session, seq)
+) STRICT, WITHOUT ROWID;
+";
+
+/// Logs in one SQLite file: write-ahead log, synced to the disk before an
+/// append returns. Not for network file systems.
+pub struct Sqlite {
+    connection: Mutex<Connection>,
+}
+
+impl Sqlite {
+    /// Opens the file, or creates it.
+    ///
+    /// # Errors
+    ///
+    /// If it is no database, another program's, or of another version; it is
+    /// then left as it was.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let shown = path.display().to_string();
+        let unusable = |error: rusqlite::Error| {
+            StoreError::Unusable {
+            path: shown.clone(),
+            message: match error.sqlite_error_code() {
+                Some(ErrorCode::NotADatabase) => {
+                    "it is not an SQLite file; name another file with --database".to_owned()
+                }
+                Some(ErrorCode::CannotOpen) => {
+                    "it cannot be opened; check that its folder exists and may be written to"
+                        .to_owned()
+                }
+                Some(ErrorCode::ReadOnly) => {
+                    "it may not be written to; change its permissions or name another file with --database"
+                        .to_owned()
+                }
+                Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
+                    "another program holds it; stop that program and try again".to_owned()
+                }
+                _ => error.to_string(),
+            },
+        }
+        };
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
+            | OpenFlags::SQLITE_OPEN_CREATE
+            | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let connection = Connection::open_with_flags(path, flags).map_err(unusable)?;
+        connection
+            .busy_timeout(Duration::from_secs(5))
+            .map_err(unusable)?;
+        check_header(&connection, &shown, unusable)?;
+        prepare(connection).map_err(unusable)
+    }
+
+    /// A store that ends with the process.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    pub fn in_memory() -> Result<Self, StoreError> {
+        Ok(prepare(Connection::open_in_memory()?)?)
+    }
+
+    /// A panic elsewhere cannot have left a transaction open: they roll back.
+    fn connection(&self) -> MutexGuard<'_, Connection> {
+        self.connection
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Refuses a file that this program did not write, before anything touches it.
+fn check_header(
+    connection: &Connection,
+    path: &str,
+    unusable: impl Fn(rusqlite::Error) -> StoreError,
+) -> Result<(), StoreError> {
+    let number = |sql: &str| -> Result<i64, StoreError> {
+        connection
+            .query_row(sql, [], |row| row.get(0))
+            .map_err(&unusable)
+    };
+    let application = number("PRAGMA application_id")?;
+    let version = number("PRAGMA user_version")?;
+    if application == APPLICATION {
+        if version == VERSION {
+            return Ok(());
+        }
+        return Err(StoreError::Version {
+            path: path.to_owned(),
+            found: version,
+            expected: VERSION,
+        });
+    }
+    if application != 0 || version != 0 || number("SELECT count(*) FROM sqlite_schema")? != 0 {
+        return Err(StoreError::Foreign {
+            path: path.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
+    connection.pragma_update(None, "journal_mode", "WAL")?;
+    connection.pragma_update(None, "synchronous", "FULL")?;
+    connection.pragma_update(None, "foreign_keys", "ON")?;
+    // Immediate, so that of two processes that find an empty file one waits.
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let version: i64 = transaction.query_row("PRAGMA user_version", [], |row| row.get(0))?;
+    if version == 0 {
+        transaction.execute_batch(SCHEMA)?;
+        transaction.pragma_update(None, "application_id", APPLICATION)?;
+        transaction.pragma_update(None, "user_version", VERSION)?;
+    }
+    transaction.commit()?;
+    Ok(Sqlite {
+        connection: Mutex::new(connection),
+    })
+}
+
+impl Store for Sqlite {
+    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
+        let mut connection = self.connection();
+        let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+        let id = session.to_string();
+        let last: Option<i64> = transaction
+            .prepare_cached("SELECT max(seq) FROM entries WHERE session = ?1")?
+            .query_row([&id], |row| row.get(0))?;
+        let expected = last.map_or(0, |last| last as u64 + 1);
+        if seq < expected {
+            return Err(StoreError::Taken {
+                session: *session,
+                seq,
+            });
+        }
+        if seq > expected {
+            return Err(StoreError::Gap {
+                session: *session,
+                seq,
+            });
+        }
+        if seq == 0 {
+            transaction.execute("INSERT INTO sessions (id) VALUES (?1)", [&id])?;
+        }
+        transaction
+            .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
+            .execute(params![id, seq as i64, body])?;
+        transaction.commit()?;
+        Ok(())
+    }
+
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        let connection = self.connection();
+        let mut statement = connection
+            .prepare_cached("SELECT seq, at, body FROM entries WHERE session = ?1 ORDER BY seq")?;
+        let entries = statement.query_map([session.to_string()], |row| entry(row, 0))?;
+        Ok(entries.collect::<rusqlite::Result<_>>()?)
+    }
+
+    fn list(&self, most: usize) -> Result<Vec<Listed>, StoreError> {
+        let connection = self.connection();
+        let mut statement = connection.prepare_cached(
+            "SELECT first.seq, first.at, first.body, last.seq, last.at, last.body, sessions.id
+             FROM sessions
+             JOIN entries AS first ON first.session = sessions.id AND first.seq = 0
+             JOIN entries AS last ON last.session = sessions.id AND last.seq =
+                 (SELECT max(seq) FROM entries WHERE session = sessions.id)
+             ORDER BY last.at DESC, sessions.id
+             LIMIT ?1",
+        )?;
+        let rows = statement.query_map([most as i64], |row| {
+            let id: String = row.get(6)?;
+            let id = id
+                .parse()
+                .map_err(|_| rusqlite::Error::InvalidColumnName(id))?;
+            Ok(Listed {
+                id,
+                first: entry(row, 0)?,
+                last: entry(row, 3)?,
+            })
+        })?;
+        Ok(rows.collect::<rusqlite::Result<_>>()?)
+    }
+}
+
+fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {
+    Ok(Entry {
+        seq: row.get::<_, i64>(at)? as u64,
+        at: row.get(at + 1)?,
+        body: row.get(at + 2)?,
+    })
+}

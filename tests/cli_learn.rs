@@ -1,0 +1,321 @@
+//! `memrep learn` and `memrep bench` as a shell sees them.
+
+use std::process::Command;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// What a run of the command left behind.
+struct Outcome {
+    status: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+fn memrep(folder: &TempDir, arguments: &str) -> Outcome {
+    let output = Command::new(env!("CARGO_BIN_EXE_memrep"))
+        .args(arguments.split_whitespace())
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    Outcome {
+        status: output.status.code(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// The last line as JSON.
+fn summary(outcome: &Outcome) -> Value {
+    assert_eq!(outcome.stderr, "");
+    serde_json::from_str(outcome.stdout.lines().last().unwrap()).unwrap()
+}
+
+#[test]
+fn learns_and_tells() {
+    let folder = folder();
+    let outcome = memrep(&folder, "learn --target tomita:4 --seed 7 --format json");
+    assert_eq!(outcome.status, Some(0));
+    let summary = summary(&outcome);
+    assert_eq!(outcome.stdout.lines().count(), 1);
+    assert_eq!(summary["target"], "tomita:4");
+    assert_eq!(summary["strategy"], "thesis");
+    assert_eq!(summary["seed"], 7);
+    assert_eq!(summary["equivalent"], true);
+    assert_eq!(summary["states"], 4);
+    assert_eq!(summary["dropped"], 0);
+    let number = |key: &str| summary[key].as_f64().unwrap();
+    let cost = 4.0 * number("membership") + number("comparison");
+    assert!((number("cost") - cost).abs() < 1e-9, "{summary}");
+    assert!(number("equivalence") >= 1.0);
+    assert!(summary["question_ms"]["p95"].as_f64() >= summary["question_ms"]["p50"].as_f64());
+
+    let people = memrep(&folder, "learn --target tomita:4 --seed 7");
+    assert_eq!(people.status, Some(0));
+    assert!(
+        people
+            .stdout
+            .starts_with("learned: tomita:4 with 4 states\n"),
+        "{}",
+        people.stdout
+    );
+}
+
+/// Every question is traced in the form that scripts rely on, and a seed gives
+/// the same trace.
+#[test]
+fn traces_every_question() {
+    let folder = folder();
+    let arguments =
+        "learn --target tomita:6 --teacher random --counterexample random --trace --format json";
+    let outcome = memrep(&folder, arguments);
+    let lines: Vec<Value> = outcome
+        .stdout
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let (summary, questions) = lines.split_last().unwrap();
+    let mut counts = std::collections::BTreeMap::new();
+    for (index, question) in questions.iter().enumerate() {
+        assert_eq!(question["question"], index + 1);
+        let kind = question["kind"].as_str().unwrap();
+        *counts.entry(kind).or_insert(0) += 1;
+        let answer = question["answer"].as_str().unwrap();
+        match kind {
+            "membership" => {
+                assert!(question["word"].is_array());
+                assert!(["accept", "reject"].contains(&answer));
+            }
+            "comparison" => {
+                assert!(question["first"].is_array() && question["second"].is_array());
+                assert!(["first", "second", "equal", "incomparable"].contains(&answer));
+            }
+            "equivalence" => {
+                assert_eq!(question["hypothesis"]["format"], "memrep-dfa");
+                assert_eq!(question["word"].is_array(), answer == "counterexample");
+                assert_eq!(question["label"].is_boolean(), answer == "counterexample");
+            }
+            other => panic!("{other}"),
+        }
+    }
+    assert_eq!(questions.last().unwrap()["answer"], "correct");
+    for (kind, count) in counts {
+        assert_eq!(summary[kind], count, "{kind}");
+    }
+    let again = memrep(&folder, arguments);
+    let traced = |outcome: &Outcome| {
+        outcome
+            .stdout
+            .rsplit_once("{\"target\"")
+            .unwrap()
+            .0
+            .to_owned()
+    };
+    assert_eq!(traced(&again), traced(&outcome));
+    let people = memrep(&folder, "learn --target tomita:6 --trace");
+    assert!(people.stdout.starts_with("1. "), "{}", people.stdout);
+}
+
+#[test]
+fn membership_only_in_two_ways() {
+    let folder = folder();
+    for arguments in [
+        "learn --target tomita:5 --strategy membership --format json",
+        "learn --target tomita:5 --comparison-cost inf --format json",
+    ] {
+        let summary = summary(&memrep(&folder, arguments));
+        assert_eq!(summary["comparison"], 0);
+        assert_eq!(
+            summary["cost"],
+            4.0 * summary["membership"].as_f64().unwrap()
+        );
+    }
+}
+
+/// What is saved is read back as the target, and a saved file is a target.
+#[test]
+fn saves_what_was_learned() {
+    let folder = folder();
+    let outcome = memrep(
+        &folder,
+        "learn --target robot --teacher random --save learned.json",
+    );
+    assert_eq!((outcome.status, outcome.stderr.as_str()), (Some(0), ""));
+    let outcome = memrep(
+        &folder,
+        "learn --target learned.json --save again.dot --format json",
+    );
+    assert_eq!(summary(&outcome)["target"], "learned.json");
+    assert_eq!(summary(&outcome)["states"], 4);
+    let outcome = memrep(&folder, "equivalent learned.json again.dot");
+    assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+}
+
+#[test]
+fn too_few_questions_are_a_no() {
+    let folder = folder();
+    let outcome = memrep(
+        &folder,
+        "learn --target tomita:7 --max-questions 3 --format json --save x.json",
+    );
+    assert_eq!(outcome.status, Some(1));
+    let summary = summary(&outcome);
+    assert_eq!(summary["equivalent"], false);
+    assert_eq!(summary["states"], Value::Null);
+    assert!(!folder.path().join("x.json").exists());
+    let people = memrep(&folder, "learn --target tomita:7 --max-questions 3");
+    assert!(
+        people.stdout.contains("`--max-questions`"),
+        "{}",
+        people.stdout
+    );
+}
+
+#[test]
+fn nothing_known_at_the_start() {
+    let folder = folder();
+    let traced = |arguments| memrep(&folder, arguments).stdout;
+    let knowing = traced("learn --target tomita:1 --trace");
+    let ignorant = traced("learn --target tomita:1 --trace --no-empty-word");
+    assert_ne!(knowing, ignorant);
+    assert!(
+        !knowing.contains("is the empty word acceptable?"),
+        "{knowing}"
+    );
+}
+
+/// Too small a bound makes true answers contradict each other: they are dropped
+/// and asked for again until the questions run out.
+#[test]
+fn a_bound_below_the_target_is_a_no() {
+    let outcome = memrep(
+        &folder(),
+        "learn --target modulo:5 --max-states 3 --max-questions 50 --format json",
+    );
+    assert_eq!(outcome.status, Some(1), "{}", outcome.stderr);
+    let summary = summary(&outcome);
+    assert_eq!(summary["equivalent"], false);
+    assert!(summary["dropped"].as_u64() > Some(0));
+}
+
+/// Wrong answers are dropped and the target learned all the same.
+#[test]
+fn an_erring_teacher() {
+    let folder = folder();
+    let mut dropped = 0;
+    for seed in 0..5 {
+        let arguments = format!(
+            "learn --target tomita:6 --error-rate 0.1 --max-states 6 --seed {seed} --format json"
+        );
+        let outcome = memrep(&folder, &arguments);
+        assert_eq!(outcome.status, Some(0), "{}", outcome.stdout);
+        dropped += summary(&outcome)["dropped"].as_u64().unwrap();
+    }
+    assert!(dropped > 0);
+}
+
+#[test]
+fn bad_input_is_told() {
+    let folder = folder();
+    std::fs::write(folder.path().join("cut.json"), "{\"format\":").unwrap();
+    std::fs::write(
+        folder.path().join("labels.jsonl"),
+        "{\"word\":[\"a\"],\"label\":true}\n",
+    )
+    .unwrap();
+    let cases = [
+        ("learn", "--target"),
+        (
+            "learn --target tomita:9",
+            "give a number from 1 to 7, or 3t",
+        ),
+        ("learn --target tomita:", "give a number from 1 to 7, or 3t"),
+        ("learn --target nothing", "there is no target `nothing`"),
+        (
+            "learn --target missing.json",
+            "missing.json: cannot read it",
+        ),
+        ("learn --target cut.json", "cut.json: line 1"),
+        ("learn --target labels.jsonl", "expected an automaton"),
+        (
+            "learn --target robot --membership-cost 0",
+            "give a positive number",
+        ),
+        (
+            "learn --target robot --membership-cost inf",
+            "give a positive number",
+        ),
+        (
+            "learn --target robot --comparison-cost -1",
+            "--comparison-cost",
+        ),
+        (
+            "learn --target robot --comparison-cost nan",
+            "give a positive number, or `inf`",
+        ),
+        (
+            "learn --target robot --error-rate 2",
+            "give a number from 0 to 1",
+        ),
+        ("learn --target robot --max-states 0", "--max-states"),
+        (
+            "learn --target robot --strategy best",
+            "possible values: thesis, membership",
+        ),
+        (
+            "learn --target robot --save no/such/folder.json",
+            "no/such/folder.json: cannot write it",
+        ),
+        (
+            "learn --target robot --save learned.png",
+            "the extension does not tell the format",
+        ),
+        ("bench nothing", "possible values: thesis"),
+        ("bench thesis --trials 0", "--trials"),
+        (
+            "bench thesis --trials 1 --out cut.json",
+            "cannot make this folder",
+        ),
+    ];
+    for (arguments, message) in cases {
+        let outcome = memrep(&folder, arguments);
+        assert_eq!(outcome.status, Some(2), "{arguments}: {}", outcome.stdout);
+        assert!(
+            outcome.stderr.contains(message),
+            "{arguments}: {}",
+            outcome.stderr
+        );
+    }
+}
+
+/// The small form of the committed table: everything is learned, and the same
+/// seeds give the same bytes, times apart.
+#[test]
+fn the_experiment_is_reproducible() {
+    let folder = folder();
+    for out in ["one", "two"] {
+        let outcome = memrep(&folder, &format!("bench thesis --trials 1 --out {out}"));
+        assert_eq!(
+            outcome.status,
+            Some(0),
+            "{}{}",
+            outcome.stdout,
+            outcome.stderr
+        );
+    }
+    let read = |path: &str| std::fs::read_to_string(folder.path().join(path)).unwrap();
+    assert_eq!(read("one/thesis.csv"), read("two/thesis.csv"));
+    let counts = |page: String| page.split_once("## CPU time").unwrap().0.to_owned();
+    assert_eq!(counts(read("one/thesis.md")), counts(read("two/thesis.md")));
+    let csv = read("one/thesis.csv");
+    assert_eq!(csv.lines().count(), 1 + 14 * 5);
+    assert!(
+        csv.lines()
+            .skip(1)
+            .all(|line| line.split(',').nth(3) == Some("true"))
+    );
+}

@@ -1,0 +1,11 @@
+//! The learner through its public door, on classes small enough for a
+//! brute-force twin to check every question, and on automata.
+
+mod brute;
+mod conflicts;
+mod finite;
+mod fold;
+mod hurried;
+mod order;
+mod refusals;
+mod tomita;

@@ -1,0 +1,9 @@
+//! The server from its store to its pages, through public doors.
+#![cfg(feature = "server")]
+
+mod api;
+mod pages;
+#[cfg(unix)]
+mod serve;
+mod site;
+mod store;

@@ -1,0 +1,182 @@
+//! The `serve` command: it starts, refuses, stops, and loses nothing when it is
+//! killed.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+struct Server {
+    child: Child,
+    address: String,
+}
+
+fn command(database: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_memrep"));
+    command
+        .arg("serve")
+        .args(arguments)
+        .arg("--database")
+        .arg(database)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+impl Server {
+    fn start(database: &Path) -> Self {
+        let mut child = command(database, &["--addr", "127.0.0.1:0"])
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.as_mut().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        let address = line
+            .trim()
+            .strip_prefix("memrep is at http://")
+            .and_then(|rest| rest.strip_suffix('/'))
+            .unwrap_or_else(|| panic!("no address: {line}"))
+            .to_owned();
+        Self { child, address }
+    }
+
+    fn ask(&self, method: &str, path: &str, body: &Value) -> (u16, String) {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        let body = if body.is_null() {
+            String::new()
+        } else {
+            body.to_string()
+        };
+        write!(
+            stream,
+            "{method} {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
+            self.address,
+            body.len()
+        )
+        .unwrap();
+        let mut text = String::new();
+        stream.read_to_string(&mut text).unwrap();
+        let status = text.split(' ').nth(1).unwrap().parse().unwrap();
+        let body = text.split_once("\r\n\r\n").unwrap().1;
+        (status, body.to_owned())
+    }
+
+    fn json(&self, method: &str, path: &str, body: &Value) -> Value {
+        let (status, text) = self.ask(method, path, body);
+        assert!(status < 300, "{status}: {text}");
+        serde_json::from_str(&text).unwrap()
+    }
+
+    fn signal(&self, name: &str) {
+        let done = Command::new("kill")
+            .args([&format!("-{name}"), &self.child.id().to_string()])
+            .status()
+            .unwrap();
+        assert!(done.success());
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        // Already gone where a test has waited for it.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn refused(mut command: Command) -> String {
+    let Output { status, stderr, .. } = command.output().unwrap();
+    assert_eq!(status.code(), Some(2));
+    String::from_utf8(stderr).unwrap()
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = folder.path().join("a.db");
+    let mut server = Server::start(&database);
+    let created = server.json("POST", "/api/v1/sessions", &json!({"task": "tomita:6"}));
+    let session = format!("/api/v1/sessions/{}", created["id"].as_str().unwrap());
+    let mut question = server.json("GET", &format!("{session}/question"), &Value::Null);
+    let mut answered = 0;
+    for round in 0..6 {
+        for _ in 0..=round {
+            let said = match question["kind"].as_str().unwrap() {
+                "membership" => "reject",
+                "comparison" => "equal",
+                _ => break,
+            };
+            let answer = json!({"question": question["number"], "answer": said});
+            question = server.json("POST", &format!("{session}/answers"), &answer);
+            answered += 1;
+        }
+        server.signal("KILL");
+        server.child.wait().unwrap();
+        server = Server::start(&database);
+        let again = server.json("GET", &format!("{session}/question"), &Value::Null);
+        assert_eq!(again, question);
+    }
+    let (_, log) = server.ask("GET", &format!("{session}/log"), &Value::Null);
+    assert_eq!(log.matches("\"event\":\"answered\"").count(), answered);
+}
+
+#[test]
+fn it_stops_when_told_to() {
+    let folder = tempfile::tempdir().unwrap();
+    for signal in ["TERM", "INT"] {
+        let mut server = Server::start(&folder.path().join("a.db"));
+        // A connection that stays open must not hold it up.
+        let idle = TcpStream::connect(&server.address).unwrap();
+        server.ask("GET", "/", &Value::Null);
+        server.signal(signal);
+        let begun = Instant::now();
+        let status = loop {
+            if let Some(status) = server.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(
+                begun.elapsed() < Duration::from_secs(20),
+                "{signal}: still there"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        assert!(status.success(), "{signal}: {status}");
+        drop(idle);
+    }
+}
+
+#[test]
+fn what_it_cannot_do_it_says_with_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start(&folder.path().join("a.db"));
+    let other = folder.path().join("b.db");
+    let taken = refused(command(&other, &["--addr", &server.address]));
+    assert!(
+        taken.contains("is in use") && taken.contains("--addr"),
+        "{taken}"
+    );
+    assert!(!other.exists(), "a server that cannot start leaves no file");
+    let public = refused(command(&other, &["--addr", "0.0.0.0:0"]));
+    assert!(
+        public.contains("no sign-in yet") && public.contains("127.0.0.1"),
+        "{public}"
+    );
+    let text = folder.path().join("notes.txt");
+    std::fs::write(
+        &text,
+        "not a database, and long enough to be seen as none ".repeat(20),
+    )
+    .unwrap();
+    let foreign = refused(command(&text, &["--addr", "127.0.0.1:0"]));
+    assert!(
+        foreign.contains("not an SQLite file") && foreign.contains("--database"),
+        "{foreign}"
+    );
+    let usage = refused(command(&other, &["--addr", "somewhere"]));
+    assert!(usage.contains("--addr"), "{usage}");
+}

@@ -1,0 +1,132 @@
+//! A site over a store, asked without a network.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::{Body, to_bytes};
+use axum::http::{HeaderMap, Method, Request, StatusCode};
+use memrep::server::{AppState, app};
+use memrep::store::Sqlite;
+use serde_json::Value;
+use tower::ServiceExt;
+
+/// The whole site.
+pub(crate) struct Site {
+    router: Router,
+}
+
+/// What came back.
+pub(crate) struct Reply {
+    pub(crate) status: StatusCode,
+    pub(crate) headers: HeaderMap,
+    pub(crate) text: String,
+}
+
+impl Reply {
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_str(&self.text).unwrap_or_else(|e| panic!("{e}: {}", self.text))
+    }
+
+    pub(crate) fn header(&self, name: &str) -> &str {
+        self.headers.get(name).map_or("", |v| v.to_str().unwrap())
+    }
+
+    /// Where a redirect leads.
+    pub(crate) fn location(&self) -> String {
+        assert_eq!(self.status, StatusCode::SEE_OTHER, "{}", self.text);
+        self.header("location").to_owned()
+    }
+
+    /// The value of an attribute on the page's `<main>`.
+    pub(crate) fn main(&self, attribute: &str) -> String {
+        let main = self
+            .text
+            .split("<main")
+            .nth(1)
+            .expect("a page has a main element");
+        attribute_of(main, attribute)
+    }
+
+    /// The words on the page, in order.
+    pub(crate) fn words(&self) -> Vec<String> {
+        self.text
+            .split("<ol class=\"word")
+            .skip(1)
+            .map(|part| attribute_of(part, "data-word"))
+            .collect()
+    }
+}
+
+fn attribute_of(text: &str, attribute: &str) -> String {
+    let tag = text.split('>').next().unwrap();
+    tag.split_once(&format!("{attribute}=\""))
+        .map_or(String::new(), |(_, rest)| {
+            rest.split('"').next().unwrap().to_owned()
+        })
+}
+
+impl Site {
+    pub(crate) fn in_memory() -> Self {
+        Self::over(Sqlite::in_memory().unwrap())
+    }
+
+    pub(crate) fn at(path: &Path) -> Self {
+        Self::over(Sqlite::open(path).unwrap())
+    }
+
+    fn over(store: Sqlite) -> Self {
+        Self {
+            router: app(AppState::new(Arc::new(store))),
+        }
+    }
+
+    pub(crate) async fn send(&self, request: Request<Body>) -> Reply {
+        let response = self.router.clone().oneshot(request).await.unwrap();
+        let (parts, body) = response.into_parts();
+        let bytes = to_bytes(body, 16 << 20).await.unwrap();
+        Reply {
+            status: parts.status,
+            headers: parts.headers,
+            text: String::from_utf8(bytes.to_vec()).unwrap(),
+        }
+    }
+
+    pub(crate) async fn get(&self, path: &str) -> Reply {
+        self.send(Request::get(path).body(Body::empty()).unwrap())
+            .await
+    }
+
+    pub(crate) async fn post(&self, path: &str, body: Value) -> Reply {
+        self.post_text(path, "application/json", body.to_string())
+            .await
+    }
+
+    /// A form, as a browser without script sends it.
+    pub(crate) async fn form(&self, path: &str, fields: &[(&str, &str)]) -> Reply {
+        let encode = |text: &str| -> String {
+            text.bytes()
+                .map(|b| match b {
+                    b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' => char::from(b).to_string(),
+                    _ => format!("%{b:02X}"),
+                })
+                .collect()
+        };
+        let body: Vec<String> = fields
+            .iter()
+            .map(|(key, value)| format!("{}={}", encode(key), encode(value)))
+            .collect();
+        self.post_text(path, "application/x-www-form-urlencoded", body.join("&"))
+            .await
+    }
+
+    pub(crate) async fn post_text(&self, path: &str, kind: &str, body: impl Into<Body>) -> Reply {
+        let request = Request::builder()
+            .method(Method::POST)
+            .uri(path)
+            .header("content-type", kind)
+            .body(body.into())
+            .unwrap();
+        self.send(request).await
+    }
+}
