@@ -255,6 +255,7 @@ impl ConceptClass for FiniteClass {
         Ok(Spread {
             concepts: consistent.map(weighted).collect(),
             exact: true,
+            hurried: false,
         })
     }
 

@@ -73,6 +73,7 @@ pub trait ConceptClass {
         };
         Ok(Spread {
             exact: sample.complete,
+            hurried: false,
             concepts: sample.concepts.into_iter().map(weighted).collect(),
         })
     }

@@ -18,6 +18,9 @@ use crate::evidence::{AnswerId, Budget, Fact};
 /// from its conflicts.
 const ENUMERATED_NODES: u64 = 3_000_000;
 
+/// The smallest automata that a spread has by search, where draws fail.
+const SEARCHED: usize = 64;
+
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
 pub struct Identifier {
@@ -157,21 +160,25 @@ impl Identifier {
         wish: &Wish<'_, Word>,
         budget: &mut Budget,
     ) -> Result<Spread<Dfa>, Failure> {
-        let smallest = self.smallest(1, wish.seed, budget)?;
-        let least = smallest.automata.first().map_or(1, Dfa::size);
-        let sizes = (least, self.settings.max_states.max(least));
-        let spread = spread::gather(&mut self.problem, &self.standing, sizes, wish, budget);
-        let mut spread = spread.filter(|spread| !spread.concepts.is_empty());
-        // Where every draw failed there is still the one that was searched for.
-        Ok(spread.take().unwrap_or_else(|| Spread {
-            concepts: (smallest.automata.into_iter())
+        let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
+        let bound = self.settings.max_states;
+        let (problem, standing) = (&mut self.problem, &self.standing);
+        let spread = spread::gather(problem, standing, &smallest, bound, wish);
+        // The search found some, so the facts are consistent, and what it found
+        // is in the spread whenever nothing else is.
+        let searched = || Spread {
+            concepts: (smallest.automata.iter().cloned())
                 .map(|concept| Weighted {
                     concept,
                     log_weight: 0.0,
                 })
                 .collect(),
             exact: false,
-        }))
+            hurried: true,
+        };
+        Ok(spread
+            .filter(|spread| !spread.concepts.is_empty())
+            .unwrap_or_else(searched))
     }
 
     /// Why no automaton within the bound is consistent.

@@ -7,6 +7,7 @@ use automata::{Dfa, Word};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::Sample;
 use super::completion::{Table, canonical};
 use super::grow::{Grower, Hint};
 use super::growth::{Growth, Manner, add_logs};
@@ -100,6 +101,10 @@ pub struct Wish<'a, A> {
     pub odds: &'a Odds,
     /// Decides what is drawn.
     pub seed: u64,
+    /// The work that listing and drawing may do, once a smallest concept is
+    /// known. Always as much, so that what an earlier search remembers cannot
+    /// show in what is drawn.
+    pub work: u64,
 }
 
 /// A consistent concept with its weight.
@@ -120,26 +125,32 @@ pub struct Spread<C> {
     pub concepts: Vec<Weighted<C>>,
     /// Whether these are all concepts of these sizes.
     pub exact: bool,
+    /// Whether the work ended before all draws were made.
+    pub hurried: bool,
 }
 
 /// Nodes of the search that a listing may take for each automaton wanted.
 const NODES_PER_LISTED: u64 = 6;
+/// With fewer different automata drawn, those that a search found are taken.
+const BARREN: usize = 16;
 /// Draws of each manner by which the number of automata of a size is guessed.
 const GUESSES: usize = 32;
 
 /// Automata of one size, by table: the sums of their weights.
 type Weights = BTreeMap<(Vec<u32>, Vec<bool>), f64>;
 
-/// The spread of the facts `standing`, of which nothing smaller than `least` is
-/// consistent and nothing larger than `most` is wanted. None if no language is
-/// consistent.
+/// The spread of the facts `standing`, with which `smallest` are consistent and
+/// nothing smaller; nothing with more than `bound` states is wanted. None if no
+/// language is consistent.
 pub(crate) fn gather(
     problem: &mut Problem,
     standing: &[FactId],
-    sizes: (usize, usize),
+    smallest: &Sample,
+    bound: usize,
     wish: &Wish<'_, Word>,
-    budget: &mut Budget,
 ) -> Option<Spread<Dfa>> {
+    let mut work = Budget::new(wish.work);
+    let budget = &mut work;
     let words: Vec<NodeId> = (wish.answers.iter())
         .flat_map(|(first, second, _)| [first, second])
         .map(|word| problem.insert(word))
@@ -148,18 +159,29 @@ pub(crate) fn gather(
     let hints: Vec<Hint> = (wish.answers.iter().zip(nodes.chunks_exact(2)))
         .map(|(&(_, _, answer), pair)| Hint::new(pair[0], pair[1], answer, wish.odds))
         .collect();
-    let (least, most) = sizes;
-    let most = most.min(least + wish.sizes.max(1) - 1);
+    let least = smallest.automata.first()?.size();
+    let most = (least + wish.sizes.max(1) - 1).min(bound.max(least));
     let mut spread = Spread {
         concepts: Vec::new(),
         exact: true,
+        hurried: false,
     };
     let mut parts: Vec<Part<'_>> = (least..=most)
         .map(|states| Part::new(&instance, &hints, states, wish.seed))
         .collect();
     for part in &mut parts {
+        if part.states == least && smallest.complete {
+            part.adopt(&smallest.automata);
+            continue;
+        }
         part.draw(GUESSES, budget);
         part.try_listing(wish.listed, budget);
+        if part.states == least && part.is_barren() {
+            // Draws miss them; a search did not. It tells of no more than it
+            // found, so the larger sizes may be overrated.
+            part.adopt(&smallest.automata);
+            spread.exact = false;
+        }
     }
     // The sizes that matter get the draws.
     let prior = |part: &Part<'_>| (part.states - least) as f64 * wish.decay.ln();
@@ -176,6 +198,7 @@ pub(crate) fn gather(
         }
         spread.exact &= part.listed.is_some();
     }
+    spread.hurried = budget.is_spent();
     let alphabet = problem.alphabet();
     for part in parts {
         let prior = prior(&part);
@@ -261,8 +284,7 @@ impl<'a> Part<'a> {
         let ended = self.grower.list(&mut share, &mut |table| {
             if is_minimal(table) {
                 let table = breadth_first(table);
-                let [even, staying] = growths.each_ref().map(|growth| growth.table(&table.0));
-                let weight = add_logs(even, staying) - std::f64::consts::LN_2;
+                let weight = prior(growths, &table);
                 listed.insert(table, weight);
             }
             listed.len() <= most
@@ -272,6 +294,35 @@ impl<'a> Part<'a> {
         if ended && within {
             self.listed = Some(listed);
         }
+    }
+
+    /// Whether draws lead nowhere.
+    fn is_barren(&self) -> bool {
+        let hits: usize = self.drawn.iter().map(BTreeMap::len).sum();
+        self.listed.is_none() && hits < BARREN
+    }
+
+    /// Takes these, which are minimal and numbered breadth first, for all there
+    /// are.
+    fn adopt(&mut self, automata: &[Dfa]) {
+        let weighted = |dfa: &Dfa| {
+            let delta = dfa.states().flat_map(|state| {
+                let targets = dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
+                targets.map(|target| target.index() as u32)
+            });
+            let table: Table = (
+                delta.collect(),
+                dfa.states().map(|state| dfa.is_accepting(state)).collect(),
+            );
+            let weight = self.prior(&table);
+            (table, weight)
+        };
+        self.listed = Some(automata.iter().map(weighted).collect());
+    }
+
+    /// The logarithm of a table's prior within its size, but for the outputs.
+    fn prior(&self, table: &Table) -> f64 {
+        prior(&self.growths, table)
     }
 
     /// The logarithm of the prior of all these automata together, each times
@@ -302,6 +353,12 @@ impl<'a> Part<'a> {
         }
         weights
     }
+}
+
+/// Each manner is half of the prior.
+fn prior(growths: &[Growth; 2], (delta, _): &Table) -> f64 {
+    let [even, staying] = growths.each_ref().map(|growth| growth.table(delta));
+    add_logs(even, staying) - std::f64::consts::LN_2
 }
 
 /// The logarithm of the chance of the answers, if this is the concept.

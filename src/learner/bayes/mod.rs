@@ -28,9 +28,11 @@ const SIZES: usize = 4;
 /// The prior of a size over that of the size before.
 const DECAY: f64 = 0.5;
 /// As many concepts of a size are listed at most.
-const LISTED: usize = 4000;
+const LISTED: usize = 2000;
 /// As many are drawn otherwise.
 const DRAWS: usize = 1000;
+/// The work of listing and drawing: some tens of milliseconds.
+const WORK: u64 = 60_000;
 
 /// An answered comparison.
 type Answer<A> = (A, A, Comparison);
@@ -49,14 +51,15 @@ impl<C: ConceptClass> Learner<C> {
             answers: &answers,
             odds: &posterior::expected_odds(),
             seed: random.random(),
+            work: tune("WORK", WORK as f64) as u64,
         };
         let spread = match self.class.spread(&wish, &mut budget) {
             Ok(spread) => spread,
             Err(Failure::Contradiction(conflict)) => return (Step::Conflict(conflict), None),
             Err(Failure::OverBudget { .. }) => return self.without_candidates(random.random()),
         };
+        let hurried = spread.hurried;
         let posterior = Posterior::new(&self.class, spread, &answers);
-        let hurried = budget.is_spent();
         let top = posterior.concepts[0].clone();
         let table = Table::new(self, &posterior, &mut random);
         let (best, worth) = match value::best(self, &posterior, &table) {
