@@ -25,16 +25,16 @@ impl Kept {
 
     fn think(&mut self) {
         while let Some(event) = self.session.think() {
-            self.append(event);
+            self.append(&event);
         }
     }
 
-    fn append(&mut self, event: Event) {
-        self.session.apply(&event).unwrap();
+    fn append(&mut self, event: &Event) {
+        self.session.apply(event).unwrap();
         // What is kept is the text.
-        let text = serde_json::to_string(&event).unwrap();
+        let text = serde_json::to_string(event).unwrap();
         self.log.push(serde_json::from_str(&text).unwrap());
-        assert_eq!(self.log.last(), Some(&event), "{text}");
+        assert_eq!(self.log.last(), Some(event), "{text}");
     }
 
     fn act(
@@ -42,7 +42,7 @@ impl Kept {
         decide: impl Fn(&Session) -> Result<Decision, Refusal>,
     ) -> Result<(), Refusal> {
         if let Decision::Append(event) = decide(&self.session)? {
-            self.append(event);
+            self.append(&event);
             self.think();
         }
         Ok(())

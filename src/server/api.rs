@@ -1,5 +1,7 @@
 //! The JSON API under `/api/v1`.
 
+use std::fmt::Write as _;
+
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{Path, Query, State};
@@ -244,10 +246,11 @@ async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Resp
     for entry in entries {
         // The body is an object: its fields follow the store's own.
         let rest = entry.body.strip_prefix('{').unwrap_or(&entry.body);
-        lines.push_str(&format!(
-            "{{\"seq\":{},\"at\":\"{}\",{rest}\n",
+        let _ = writeln!(
+            lines,
+            "{{\"seq\":{},\"at\":\"{}\",{rest}",
             entry.seq, entry.at
-        ));
+        );
     }
     Ok(super::typed("application/jsonl; charset=utf-8", lines))
 }

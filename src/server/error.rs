@@ -125,7 +125,7 @@ impl WebError {
             }
             Self::Refused(refusal) => sentence(&refusal.to_string()),
             Self::Malformed(malformed) => sentence(&malformed.message),
-            Self::Unreadable(message) => sentence(message),
+            Self::Unreadable(message) | Self::TooLargeToShow(message) => sentence(message),
             Self::TooLarge => "The request is too large: send less at once.".to_owned(),
             Self::Foreign => {
                 "The request came from another site, so nothing was done: use this site's own pages."
@@ -134,7 +134,6 @@ impl WebError {
             Self::NoAutomaton => {
                 "No rule is on show at the moment: go on answering until one is.".to_owned()
             }
-            Self::TooLargeToShow(message) => sentence(message),
             Self::Slow => {
                 "The next question is still being worked out. Your answer is kept: ask again in a moment."
                     .to_owned()

@@ -137,7 +137,7 @@ pub async fn run(
         if stopped.await.is_ok() {
             tokio::time::sleep(FAREWELL).await;
         } else {
-            std::future::pending().await
+            std::future::pending::<()>().await;
         }
     };
     tokio::select! {

@@ -33,8 +33,9 @@ impl Shell {
     /// A page of a session.
     pub(crate) fn of(bar: Bar) -> Self {
         Self {
-            session: Some(bar.clone()),
-            ..Self::plain(&bar.title)
+            title: bar.title.clone(),
+            session: Some(bar),
+            ..Self::plain("")
         }
     }
 }

@@ -117,6 +117,10 @@ mod cost {
         Named(String),
     }
 
+    #[expect(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde hands over references"
+    )]
     pub(super) fn serialize<S: Serializer>(cost: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         if cost.is_finite() {
             Form::Finite(*cost).serialize(serializer)

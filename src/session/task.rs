@@ -130,12 +130,20 @@ impl Task {
     }
 
     /// The alphabet of the symbols' names.
+    ///
+    /// # Panics
+    ///
+    /// If the task was put together by hand, and its names make no alphabet.
     pub fn alphabet(&self) -> Alphabet {
         Alphabet::new(self.symbols.iter().map(|symbol| symbol.name.as_str()))
             .expect("a task's symbols were checked when it was read")
     }
 
-    /// What is known at the start, as facts.
+    /// What is known at the start, as facts over [`Task::alphabet`].
+    ///
+    /// # Panics
+    ///
+    /// If the task was put together by hand, and an example uses other names.
     pub fn known(&self, alphabet: &Alphabet) -> Vec<Fact<Word>> {
         self.examples
             .iter()

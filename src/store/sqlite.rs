@@ -1,4 +1,4 @@
-//! The store in one SQLite file.
+//! The store in one `SQLite` file.
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -26,7 +26,7 @@ CREATE TABLE entries (
 ) STRICT, WITHOUT ROWID;
 ";
 
-/// Logs in one SQLite file: write-ahead log, synced to the disk before an
+/// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.
 pub struct Sqlite {
     connection: Mutex<Connection>,
@@ -148,7 +148,7 @@ impl Store for Sqlite {
         let last: Option<i64> = transaction
             .prepare_cached("SELECT max(seq) FROM entries WHERE session = ?1")?
             .query_row([&id], |row| row.get(0))?;
-        let expected = last.map_or(0, |last| last as u64 + 1);
+        let expected = last.map_or(0, |last| last.cast_unsigned() + 1);
         if seq < expected {
             return Err(StoreError::Taken {
                 session: *session,
@@ -166,7 +166,7 @@ impl Store for Sqlite {
         }
         transaction
             .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
-            .execute(params![id, seq as i64, body])?;
+            .execute(params![id, seq.cast_signed(), body])?;
         transaction.commit()?;
         Ok(())
     }
@@ -190,7 +190,7 @@ impl Store for Sqlite {
              ORDER BY last.at DESC, sessions.id
              LIMIT ?1",
         )?;
-        let rows = statement.query_map([most as i64], |row| {
+        let rows = statement.query_map([i64::try_from(most).unwrap_or(i64::MAX)], |row| {
             let id: String = row.get(6)?;
             let id = id
                 .parse()
@@ -207,7 +207,7 @@ impl Store for Sqlite {
 
 fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {
     Ok(Entry {
-        seq: row.get::<_, i64>(at)? as u64,
+        seq: row.get::<_, i64>(at)?.cast_unsigned(),
         at: row.get(at + 1)?,
         body: row.get(at + 2)?,
     })

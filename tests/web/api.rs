@@ -243,14 +243,10 @@ async fn sessions_that_cannot_be_are_refused() {
     );
 }
 
-#[tokio::test]
-async fn answers_that_cannot_be_are_refused() {
-    let site = Site::in_memory();
-    let session = create(&site, json!({"task": "robot"})).await;
-    let answers = format!("{session}/answers");
-    let open = site.get(&format!("{session}/question")).await.json();
-    assert_eq!(open["number"], 1);
-    for (body, status, code, field) in [
+/// Answers to the first question of a session of the robot, none of which can
+/// be: the body, and the status, code and field of the error.
+fn bad_answers() -> Vec<(Value, u16, &'static str, &'static str)> {
+    vec![
         (json!(7), 422, "malformed", ""),
         (json!({"answer": "accept"}), 422, "malformed", "question"),
         (
@@ -314,7 +310,17 @@ async fn answers_that_cannot_be_are_refused() {
             "no_such_question",
             "question",
         ),
-    ] {
+    ]
+}
+
+#[tokio::test]
+async fn answers_that_cannot_be_are_refused() {
+    let site = Site::in_memory();
+    let session = create(&site, json!({"task": "robot"})).await;
+    let answers = format!("{session}/answers");
+    let open = site.get(&format!("{session}/question")).await.json();
+    assert_eq!(open["number"], 1);
+    for (body, status, code, field) in bad_answers() {
         let reply = site.post(&answers, body.clone()).await;
         check(&reply, status, code, field);
         assert_eq!(
