@@ -115,11 +115,13 @@ fn rate(text: &str) -> Result<f64, String> {
 
 impl ValueEnum for Strategy {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Thesis, Self::Membership]
+        &[Self::Bayes, Self::Thesis, Self::Membership]
     }
 
     fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
         Some(match self {
+            Self::Bayes => clap::builder::PossibleValue::new("bayes")
+                .help("the question of any kind that is worth most for its cost"),
             Self::Thesis => clap::builder::PossibleValue::new("thesis")
                 .help("Algorithms 4 to 6 of the dissertation's chapter 5"),
             Self::Membership => {

@@ -2,7 +2,7 @@
 
 use automata::{Alphabet, Dfa, Word};
 
-use super::{ConceptClass, Failure, Sample};
+use super::{ConceptClass, Failure, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
 use crate::identify::{Identifier, Settings};
 
@@ -56,6 +56,24 @@ impl ConceptClass for DfaClass {
             concepts: sample.automata,
             complete: sample.complete,
         })
+    }
+
+    fn spread(
+        &mut self,
+        wish: &Wish<'_, Word>,
+        budget: &mut Budget,
+    ) -> Result<Spread<Dfa>, Failure> {
+        self.identifier.spread(wish, budget)
+    }
+
+    fn place(&self, concept: &Dfa, atom: &Word) -> Option<u32> {
+        // In a rejecting sink all is lost already; how and when it came to that
+        // tells words apart better than where they end.
+        let end = concept.run(atom);
+        let mut symbols = self.alphabet.symbols();
+        let sink =
+            !concept.is_accepting(end) && symbols.all(|symbol| concept.next(end, symbol) == end);
+        (!sink).then_some(end.index() as u32)
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

@@ -6,7 +6,9 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Cause, ConceptClass, Contradiction, Failure, Preorder, Sample};
+use super::{
+    Cause, ConceptClass, Contradiction, Failure, Preorder, Sample, Spread, Weighted, Wish,
+};
 use crate::evidence::{AnswerId, Budget, Fact};
 
 /// An atom's row in the table of a [`FiniteClass`], from 0; lower is simpler.
@@ -222,6 +224,39 @@ impl ConceptClass for FiniteClass {
             drawn
         };
         Ok(Sample { concepts, complete })
+    }
+
+    /// All consistent concepts: a table is never too large to be listed. Those of
+    /// one size share the size's prior evenly.
+    fn spread(
+        &mut self,
+        wish: &Wish<'_, FiniteAtom>,
+        budget: &mut Budget,
+    ) -> Result<Spread<FiniteConcept>, Failure> {
+        let least = self.sample(1, wish.seed, budget)?;
+        let least = self.size(least.concepts[0]);
+        let within = least..least + wish.sizes.max(1);
+        let mut of_size: BTreeMap<usize, usize> = BTreeMap::new();
+        for column in &self.columns {
+            *of_size.entry(column.size).or_default() += 1;
+        }
+        let consistent = self.concepts().filter(|&concept| {
+            let facts = self.facts.iter().map(|(_, fact)| fact);
+            within.contains(&self.size(concept)) && self.is_consistent(concept, facts)
+        });
+        let weighted = |concept| {
+            let size = self.size(concept);
+            let rank = (size - least) as f64;
+            Weighted {
+                concept,
+                log_weight: rank * wish.decay.ln() - (of_size[&size] as f64).ln(),
+            }
+        };
+        Ok(Spread {
+            concepts: consistent.map(weighted).collect(),
+            exact: true,
+            hurried: false,
+        })
     }
 
     fn witnesses(

@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use crate::evidence::{AnswerId, Budget, Fact};
-pub use crate::identify::{Cause, Contradiction, Failure};
+pub use crate::identify::{Cause, Contradiction, Ending, Failure, Odds, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use preorder::Preorder;
@@ -53,6 +53,38 @@ pub trait ConceptClass {
         seed: u64,
         budget: &mut Budget,
     ) -> Result<Sample<Self::Concept>, Failure>;
+
+    /// Consistent concepts of several sizes with their prior weights, a function
+    /// of the standing facts and the wish alone. Unless a class does better, the
+    /// smallest size alone, all concepts alike.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::sample`].
+    fn spread(
+        &mut self,
+        wish: &Wish<'_, Self::Atom>,
+        budget: &mut Budget,
+    ) -> Result<Spread<Self::Concept>, Failure> {
+        let sample = self.sample(wish.draws.max(1), wish.seed, budget)?;
+        let weighted = |concept| Weighted {
+            concept,
+            log_weight: 0.0,
+        };
+        Ok(Spread {
+            exact: sample.complete,
+            hurried: false,
+            concepts: sample.concepts.into_iter().map(weighted).collect(),
+        })
+    }
+
+    /// A number for the place in which an atom ends in the concept; atoms of one
+    /// place have one label. None where a class knows no finer places than in
+    /// and out.
+    fn place(&self, concept: &Self::Concept, atom: &Self::Atom) -> Option<u32> {
+        let _ = (concept, atom);
+        None
+    }
 
     /// Up to `count` of the simplest atoms that `inside` contains and `outside`
     /// does not, simplest first; none exactly if `inside ⊆ outside`.

@@ -9,6 +9,7 @@ use super::contradiction::{self, Finding};
 use super::engine::{Engine, Query, Verdict};
 use super::enumerate::Enumerator;
 use super::problem::{FactId, Problem};
+use super::spread::{self, Spread, Weighted, Wish};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
@@ -17,6 +18,9 @@ use crate::evidence::{AnswerId, Budget, Fact};
 /// to 20 states), so it has its turn only when all else failed, or with the
 /// second half of a smaller budget.
 const ENUMERATED_UNITS: u64 = 100_000_000;
+
+/// The smallest automata that a spread has by search, where draws fail.
+const SEARCHED: usize = 64;
 
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
@@ -143,6 +147,39 @@ impl Identifier {
             }
         }
         Err(Failure::Contradiction(self.no_automaton(&core, budget)))
+    }
+
+    /// Consistent automata of several sizes, from the smallest on, with their
+    /// prior weights: a function of the standing facts and the wish alone.
+    ///
+    /// # Errors
+    ///
+    /// If no automaton within the bound is consistent, or the budget ends before
+    /// one is known.
+    pub fn spread(
+        &mut self,
+        wish: &Wish<'_, Word>,
+        budget: &mut Budget,
+    ) -> Result<Spread<Dfa>, Failure> {
+        let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
+        let bound = self.settings.max_states;
+        let (problem, standing) = (&mut self.problem, &self.standing);
+        let spread = spread::gather(problem, standing, &smallest, bound, wish);
+        // The search found some, so the facts are consistent, and what it found
+        // is in the spread whenever nothing else is.
+        let searched = || Spread {
+            concepts: (smallest.automata.iter().cloned())
+                .map(|concept| Weighted {
+                    concept,
+                    log_weight: 0.0,
+                })
+                .collect(),
+            exact: false,
+            hurried: true,
+        };
+        Ok(spread
+            .filter(|spread| !spread.concepts.is_empty())
+            .unwrap_or_else(searched))
     }
 
     /// Why no automaton within the bound is consistent.

@@ -6,6 +6,8 @@ mod completion;
 mod contradiction;
 mod engine;
 mod enumerate;
+mod grow;
+mod growth;
 mod growing;
 mod identifier;
 mod instance;
@@ -14,12 +16,14 @@ mod merged;
 mod partial;
 mod problem;
 mod sat;
+mod spread;
 mod tree;
 
 use automata::Dfa;
 
 use crate::evidence::AnswerId;
 pub use identifier::Identifier;
+pub use spread::{Ending, Odds, Spread, Weighted, Wish};
 
 /// Which engine answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -178,6 +178,35 @@ impl<'a> Partial<'a> {
         }
     }
 
+    /// The number of edges of used states that are not defined.
+    pub(crate) fn open_edges(&self) -> usize {
+        (self.used * self.symbols) as usize - self.edges.len()
+    }
+
+    /// The first edge of a used state that is not defined.
+    pub(crate) fn first_open_edge(&self) -> Option<u32> {
+        let place = self.delta().iter().position(|&target| target == NONE);
+        place.map(|edge| edge as u32)
+    }
+
+    /// Whether a node waits at this edge.
+    pub(crate) fn is_awaited(&self, edge: u32) -> bool {
+        self.head[edge as usize] != NONE
+    }
+
+    /// The state in which a node is placed.
+    pub(crate) fn place_of(&self, node: Node) -> Option<u32> {
+        Some(self.state[node as usize]).filter(|&state| state != NONE)
+    }
+
+    /// Decides the output of a used state; `false` if a fact is violated, and
+    /// then it must be undone.
+    pub(crate) fn assume(&mut self, state: u32, accepting: bool) -> bool {
+        let consistent = self.decide(state, u8::from(accepting));
+        self.flips.clear();
+        consistent
+    }
+
     /// The implications between outputs that are not decided: if the first
     /// accepts, so does the second.
     pub(crate) fn open_implications(&self) -> impl Iterator<Item = (u32, u32)> + '_ {

@@ -17,7 +17,7 @@ use crate::evidence::Budget;
 const SAMPLE: usize = 32;
 
 /// A step, and the simplest concept known to be consistent.
-type Move<C> = (
+pub(super) type Move<C> = (
     Step<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
     Option<<C as ConceptClass>::Concept>,
 );
@@ -39,6 +39,9 @@ impl<C: ConceptClass> Learner<C> {
                 hypothesis: hypothesis.clone(),
             };
             return (step, Some(hypothesis));
+        }
+        if self.config.strategy == Strategy::Bayes {
+            return self.weigh();
         }
         let mut random = self.generator();
         let mut budget = Budget::new(self.config.budget);
@@ -65,7 +68,7 @@ impl<C: ConceptClass> Learner<C> {
 
     /// The generator of this step. A stream of its own for every number of
     /// entries: what was drawn earlier has no say in it.
-    fn generator(&self) -> ChaCha8Rng {
+    pub(super) fn generator(&self) -> ChaCha8Rng {
         let mut random = ChaCha8Rng::seed_from_u64(self.config.seed);
         random.set_stream(self.entries.len() as u64);
         random
@@ -150,7 +153,7 @@ impl<C: ConceptClass> Learner<C> {
 
     /// The budget showed no consistent concept: the simplest atom of which
     /// nothing is known makes the next search easier, whatever it is.
-    fn without_candidates(&mut self, seed: u64) -> Move<C> {
+    pub(super) fn without_candidates(&mut self, seed: u64) -> Move<C> {
         if let Some(atom) = self.unknown_atom() {
             return (ask(Question::Membership { atom }, None, true), None);
         }
@@ -191,13 +194,17 @@ impl<C: ConceptClass> Learner<C> {
     }
 }
 
-fn equivalence<A, C: Clone>(hypothesis: &C) -> Question<A, C> {
+pub(super) fn equivalence<A, C: Clone>(hypothesis: &C) -> Question<A, C> {
     Question::Equivalence {
         hypothesis: hypothesis.clone(),
     }
 }
 
-fn ask<A, C>(question: Question<A, C>, round: Option<Round>, hurried: bool) -> Step<A, C> {
+pub(super) fn ask<A, C>(
+    question: Question<A, C>,
+    round: Option<Round>,
+    hurried: bool,
+) -> Step<A, C> {
     Step::Ask {
         question,
         round,

@@ -5,6 +5,7 @@
 //! next depends on its [`Config`] and on the answers that stand, and on nothing
 //! else. It must not know async, clocks, files, SQL or HTML.
 
+mod bayes;
 mod choose;
 mod exp4;
 mod experts;
@@ -25,6 +26,9 @@ use crate::evidence::{AnswerId, Comparison, Fact};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Strategy {
+    /// A posterior over concepts of several sizes, and the question that is
+    /// worth most for its cost.
+    Bayes,
     /// Algorithms 4 to 6 as written.
     Thesis,
     /// The same without comparisons.

@@ -71,7 +71,7 @@ impl Setup {
             Some(value) => serde_json::from_value(value.clone()).map_err(|_| {
                 Malformed::new(
                     "strategy",
-                    "this strategy is unknown: give `\"thesis\"` or `\"membership\"`",
+                    "this strategy is unknown: give `\"bayes\"`, `\"thesis\"` or `\"membership\"`",
                 )
             })?,
         };

@@ -5,6 +5,7 @@ mod brute;
 mod contradictions;
 mod draw;
 mod limits;
+mod spread;
 mod standing;
 
 use std::collections::BTreeSet;

@@ -10,8 +10,8 @@ use proptest::prelude::*;
 
 use crate::brute::{ATOMS, Relation, class, holds, preorders, worlds};
 
-static WORLDS: LazyLock<Vec<(Relation, u8)>> = LazyLock::new(worlds);
-static PREORDERS: LazyLock<Vec<Relation>> = LazyLock::new(preorders);
+pub(crate) static WORLDS: LazyLock<Vec<(Relation, u8)>> = LazyLock::new(worlds);
+pub(crate) static PREORDERS: LazyLock<Vec<Relation>> = LazyLock::new(preorders);
 
 /// More questions than there are membership queries, comparisons and wrong
 /// hypotheses.
@@ -27,14 +27,14 @@ pub(crate) fn config(strategy: Strategy, seed: u64) -> Config {
     }
 }
 
-fn set_of(class: &FiniteClass, concept: FiniteConcept) -> u8 {
+pub(crate) fn set_of(class: &FiniteClass, concept: FiniteConcept) -> u8 {
     (0..ATOMS)
         .filter(|atom| class.contains(&concept, &FiniteAtom(*atom)))
         .fold(0, |set, atom| set | 1 << atom)
 }
 
 /// The facts that each possible answer to the question would bring.
-fn outcomes(question: &Question<FiniteAtom, FiniteConcept>) -> Vec<Fact<FiniteAtom>> {
+pub(crate) fn outcomes(question: &Question<FiniteAtom, FiniteConcept>) -> Vec<Fact<FiniteAtom>> {
     match *question {
         Question::Membership { atom } => [true, false]
             .map(|accepted| Fact::Label { atom, accepted })

@@ -1,6 +1,7 @@
 //! The learner through its public door, on classes small enough for a
 //! brute-force twin to check every question, and on automata.
 
+mod bayes;
 mod brute;
 mod conflicts;
 mod finite;
