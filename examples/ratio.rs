@@ -56,8 +56,11 @@ fn run(strategy: &str, target: &Target, cost: f64, seed: u64, order: Order) -> a
         strategy: chosen,
         membership_cost: cost,
         comparison_cost: 1.0,
+        equivalence_cost: env("EQ", 4.0) * cost,
+        shortest_counterexamples: env("SX", 0.0) > 0.0,
         seed,
         budget: 1_000_000,
+        ..Config::default()
     };
     let settings = Settings {
         engine: EngineChoice::Auto,
@@ -101,6 +104,13 @@ fn run(strategy: &str, target: &Target, cost: f64, seed: u64, order: Order) -> a
         report.hurried,
     );
     Ok(())
+}
+
+fn env(name: &str, default: f64) -> f64 {
+    std::env::var(name)
+        .ok()
+        .and_then(|v| v.parse().ok())
+        .unwrap_or(default)
 }
 
 fn named(name: &str) -> anyhow::Result<Vec<Target>> {

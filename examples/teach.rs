@@ -22,10 +22,7 @@ fn main() -> anyhow::Result<()> {
     };
     let config = Config {
         strategy: Strategy::Thesis,
-        membership_cost: 4.0,
-        comparison_cost: 1.0,
-        seed: 0,
-        budget: 1_000_000,
+        ..Config::default()
     };
     let class = DfaClass::new(alphabet.clone(), settings);
     let mut learner = Learner::new(class, config, Vec::new());

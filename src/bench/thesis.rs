@@ -138,6 +138,7 @@ fn one(
         comparison_cost: 1.0,
         seed,
         budget: BUDGET,
+        ..Config::default()
     };
     let mut learner = Learner::new(class, config, target.known().to_vec());
     let mut teacher = ScriptedTeacher::new(target, teacher_of(name, seed));

@@ -175,6 +175,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         comparison_cost: args.comparison_cost,
         seed: args.seed,
         budget: BUDGET,
+        ..Config::default()
     };
     let class = DfaClass::new(alphabet.clone(), settings);
     let mut learner = Learner::new(class, config, target.known().to_vec());

@@ -44,10 +44,38 @@ pub struct Config {
     pub membership_cost: f64,
     /// The cost `b` of a comparison (Eq. 5.2), positive; infinite: never asked.
     pub comparison_cost: f64,
+    /// The cost of an equivalence query, zero or more and finite. Only
+    /// [`Strategy::Bayes`] weighs it; the others ask when one concept is left.
+    pub equivalence_cost: f64,
+    /// Whether the teacher promises that no counterexample could be shorter, so
+    /// that every simpler atom has the label that the hypothesis gives it.
+    pub shortest_counterexamples: bool,
+    /// Whether answers may be wrong, so that they are evidence and no facts.
+    pub robust: bool,
     /// Decides every random choice.
     pub seed: u64,
     /// The work that choosing one question may do.
     pub budget: u64,
+}
+
+/// An equivalence query costs as much as so many membership queries, where
+/// nothing else is said: a person who judges a whole automaton looks at several
+/// behaviours.
+pub const EQUIVALENCE_COST: f64 = 4.0;
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::Thesis,
+            membership_cost: 4.0,
+            comparison_cost: 1.0,
+            equivalence_cost: 4.0 * EQUIVALENCE_COST,
+            shortest_counterexamples: false,
+            robust: false,
+            seed: 0,
+            budget: 2_000_000,
+        }
+    }
 }
 
 /// A question to the teacher.

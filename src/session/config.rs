@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::reader::{Fields, Malformed};
-use crate::learner::{Config, Strategy};
+use crate::learner::{Config, EQUIVALENCE_COST, Strategy};
 
 /// The work that choosing one question may do, where nothing else is said: a
 /// few seconds at most.
@@ -96,8 +96,10 @@ impl Setup {
             strategy: self.strategy,
             membership_cost: self.membership_cost,
             comparison_cost: self.comparison_cost,
+            equivalence_cost: EQUIVALENCE_COST * self.membership_cost,
             seed: self.seed,
             budget: self.budget,
+            ..Config::default()
         }
     }
 }

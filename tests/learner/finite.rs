@@ -24,6 +24,7 @@ pub(crate) fn config(strategy: Strategy, seed: u64) -> Config {
         comparison_cost: 1.0,
         seed,
         budget: 1_000_000,
+        ..Config::default()
     }
 }
 
