@@ -5,6 +5,8 @@
 //! map with its invariants):
 //!
 //! - [`evidence`]: what a teacher's answers say, whatever is being learned.
+//! - [`belief`]: how a teacher is believed to answer, and what answers are worth
+//!   as evidence.
 //! - [`identify`]: the smallest automata consistent with evidence.
 //! - [`concept`]: what can be learned: classes of concepts, smallest first.
 //! - [`oracle`]: who can answer without a person.
@@ -15,6 +17,7 @@
 //! - [`mod@bench`]: scripted runs and the tables made of them.
 //! - [`cli`]: the commands of the `memrep` binary.
 
+pub mod belief;
 pub mod bench;
 pub mod cli;
 pub mod concept;

@@ -7,8 +7,9 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    Cause, ConceptClass, Contradiction, Failure, Preorder, Sample, Spread, Weighted, Wish,
+    Cause, ConceptClass, Contradiction, Failure, Preorder, Sample, Spread, Weighted, Wish, tally,
 };
+use crate::belief::Belief;
 use crate::evidence::{AnswerId, Budget, Fact};
 
 /// An atom's row in the table of a [`FiniteClass`], from 0; lower is simpler.
@@ -244,12 +245,15 @@ impl ConceptClass for FiniteClass {
             let facts = self.facts.iter().map(|(_, fact)| fact);
             within.contains(&self.size(concept)) && self.is_consistent(concept, facts)
         });
+        let belief = Belief::new(wish.heard.iter().map(Vec::len).sum());
         let weighted = |concept| {
             let size = self.size(concept);
             let rank = (size - least) as f64;
+            let prior = rank * wish.decay.ln() - (of_size[&size] as f64).ln();
+            let tally = tally(self, &concept, wish.heard);
             Weighted {
                 concept,
-                log_weight: rank * wish.decay.ln() - (of_size[&size] as f64).ln(),
+                log_weight: prior + belief.log_chance(&tally),
             }
         };
         Ok(Spread {

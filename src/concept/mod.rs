@@ -11,7 +11,9 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use crate::evidence::{AnswerId, Budget, Fact};
-pub use crate::identify::{Cause, Contradiction, Ending, Failure, Odds, Spread, Weighted, Wish};
+use crate::belief::{Tally, compared};
+pub use crate::belief::{Ending, Heard};
+pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use preorder::Preorder;
@@ -54,9 +56,8 @@ pub trait ConceptClass {
         budget: &mut Budget,
     ) -> Result<Sample<Self::Concept>, Failure>;
 
-    /// Consistent concepts of several sizes with their prior weights, a function
-    /// of the standing facts and the wish alone. Unless a class does better, the
-    /// smallest size alone, all concepts alike.
+    /// Consistent concepts of several sizes with their chances after all that
+    /// was heard, a function of the standing facts and the wish alone.
     ///
     /// # Errors
     ///
@@ -65,18 +66,7 @@ pub trait ConceptClass {
         &mut self,
         wish: &Wish<'_, Self::Atom>,
         budget: &mut Budget,
-    ) -> Result<Spread<Self::Concept>, Failure> {
-        let sample = self.sample(wish.draws.max(1), wish.seed, budget)?;
-        let weighted = |concept| Weighted {
-            concept,
-            log_weight: 0.0,
-        };
-        Ok(Spread {
-            exact: sample.complete,
-            hurried: false,
-            concepts: sample.concepts.into_iter().map(weighted).collect(),
-        })
-    }
+    ) -> Result<Spread<Self::Concept>, Failure>;
 
     /// A number for the place in which an atom ends in the concept; atoms of one
     /// place have one label. None where a class knows no finer places than in
@@ -97,4 +87,25 @@ pub trait ConceptClass {
 
     /// The atoms of the universe, simplest first; endless for infinite ones.
     fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
+}
+
+/// What was heard, as a concept sees it.
+pub fn tally<C: ConceptClass + ?Sized>(
+    class: &C,
+    concept: &C::Concept,
+    heard: &[Vec<Heard<C::Atom>>],
+) -> Tally {
+    let mut tally = Tally::default();
+    for Heard { fact, sure } in heard.iter().flatten() {
+        if let Fact::Label { atom, accepted } = fact {
+            tally.label(class.contains(concept, atom) == *accepted, *sure);
+        }
+        if let Some((first, second, verdict)) = compared(fact) {
+            let place = class.place(concept, first);
+            let same = place.is_some() && place == class.place(concept, second);
+            let [one, other] = [first, second].map(|atom| class.contains(concept, atom));
+            tally.comparison(Ending::of(one, other, same), verdict, *sure);
+        }
+    }
+    tally
 }

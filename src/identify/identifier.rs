@@ -9,7 +9,8 @@ use super::contradiction::{self, Finding};
 use super::engine::{Engine, Query, Verdict};
 use super::enumerate::Enumerator;
 use super::problem::{FactId, Problem};
-use super::spread::{self, Spread, Weighted, Wish};
+use super::particles::Particles;
+use super::spread::{self, Spread, Wish};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
 use crate::evidence::{AnswerId, Budget, Fact};
 
@@ -33,6 +34,8 @@ pub struct Identifier {
     /// No automaton with fewer states is consistent.
     at_least: usize,
     engines: Engines,
+    /// What [`Self::spread`] drew last.
+    particles: Option<Particles>,
 }
 
 impl Identifier {
@@ -45,6 +48,7 @@ impl Identifier {
             by_answer: BTreeMap::new(),
             at_least: 1,
             engines: Engines::default(),
+            particles: None,
         }
     }
 
@@ -163,23 +167,14 @@ impl Identifier {
     ) -> Result<Spread<Dfa>, Failure> {
         let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
         let bound = self.settings.max_states;
-        let (problem, standing) = (&mut self.problem, &self.standing);
-        let spread = spread::gather(problem, standing, &smallest, bound, wish);
-        // The search found some, so the facts are consistent, and what it found
-        // is in the spread whenever nothing else is.
-        let searched = || Spread {
-            concepts: (smallest.automata.iter().cloned())
-                .map(|concept| Weighted {
-                    concept,
-                    log_weight: 0.0,
-                })
-                .collect(),
-            exact: false,
-            hurried: true,
-        };
-        Ok(spread
-            .filter(|spread| !spread.concepts.is_empty())
-            .unwrap_or_else(searched))
+        Ok(spread::gather(
+            &self.problem,
+            &self.standing,
+            &smallest,
+            bound,
+            &mut self.particles,
+            wish,
+        ))
     }
 
     /// Why no automaton within the bound is consistent.

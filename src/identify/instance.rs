@@ -45,16 +45,6 @@ pub(crate) struct Instance {
 impl Instance {
     /// The facts `standing` of `problem`; none if no language is consistent.
     pub(crate) fn new(problem: &Problem, standing: &[FactId]) -> Option<Self> {
-        Self::with_words(problem, standing, &[]).map(|(instance, _)| instance)
-    }
-
-    /// The same with more words in the tree, that constrain nothing; and the
-    /// nodes of these words.
-    pub(crate) fn with_words(
-        problem: &Problem,
-        standing: &[FactId],
-        words: &[NodeId],
-    ) -> Option<(Self, Vec<Node>)> {
         let forced = Forced::new(problem, standing);
         if forced.clash() {
             return None;
@@ -90,22 +80,16 @@ impl Instance {
             needed[low.index()] = true;
             needed[high.index()] = true;
         }
-        for &word in words {
-            needed[word.index()] = true;
-        }
-        let (instance, number) = Self::number(problem, &forced, &edges, &needed);
-        let nodes = words.iter().map(|word| number[word.index()]).collect();
-        Some((instance, nodes))
+        Some(Self::number(problem, &forced, &edges, &needed))
     }
 
-    /// Numbers the needed nodes and their ancestors breadth first; and the
-    /// number of each node of the tree that is among them.
+    /// Numbers the needed nodes and their ancestors breadth first.
     fn number(
         problem: &Problem,
         forced: &Forced,
         edges: &[(NodeId, NodeId)],
         needed: &[bool],
-    ) -> (Self, Vec<Node>) {
+    ) -> Self {
         let tree = problem.tree();
         let mut weights: Vec<u32> = needed.iter().map(|&needed| u32::from(needed)).collect();
         for node in tree.nodes().rev() {
@@ -158,7 +142,7 @@ impl Instance {
         }
         first_partner.push(at as u32);
 
-        let instance = Self {
+        Self {
             symbols: problem.alphabet().len(),
             first_child,
             symbol,
@@ -168,8 +152,7 @@ impl Instance {
             first_partner,
             partners: ends.into_iter().map(|(_, partner)| partner).collect(),
             weight: order.iter().map(|node| weights[node.index()]).collect(),
-        };
-        (instance, number)
+        }
     }
 
     /// The number of nodes, at least 1.

@@ -14,6 +14,7 @@ mod instance;
 mod labels;
 mod merged;
 mod partial;
+mod particles;
 mod problem;
 mod sat;
 mod spread;
@@ -23,7 +24,7 @@ use automata::Dfa;
 
 use crate::evidence::AnswerId;
 pub use identifier::Identifier;
-pub use spread::{Ending, Odds, Spread, Weighted, Wish};
+pub use spread::{Spread, Weighted, Wish};
 
 /// Which engine answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -189,16 +189,6 @@ impl<'a> Partial<'a> {
         place.map(|edge| edge as u32)
     }
 
-    /// Whether a node waits at this edge.
-    pub(crate) fn is_awaited(&self, edge: u32) -> bool {
-        self.head[edge as usize] != NONE
-    }
-
-    /// The state in which a node is placed.
-    pub(crate) fn place_of(&self, node: Node) -> Option<u32> {
-        Some(self.state[node as usize]).filter(|&state| state != NONE)
-    }
-
     /// Decides the output of a used state; `false` if a fact is violated, and
     /// then it must be undone.
     pub(crate) fn assume(&mut self, state: u32, accepting: bool) -> bool {

@@ -88,15 +88,6 @@ impl Problem {
         Some(id)
     }
 
-    /// The node of a word of which no fact need speak.
-    ///
-    /// # Panics
-    ///
-    /// If it has a symbol that the alphabet does not have.
-    pub(crate) fn insert(&mut self, word: &Word) -> NodeId {
-        self.tree.insert(word)
-    }
-
     /// The alphabet of the words.
     pub(crate) fn alphabet(&self) -> &Alphabet {
         &self.alphabet

@@ -7,7 +7,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::posterior::Posterior;
 use super::tune;
-use crate::concept::ConceptClass;
+use crate::belief::{Heard, Tally};
+use crate::concept::{ConceptClass, tally};
 use crate::learner::Learner;
 
 /// The simplest atoms of the universe, as many.
@@ -16,7 +17,7 @@ const SIMPLEST: usize = 127;
 /// that whatever can still be told apart is.
 const PAIRS: usize = 16;
 /// The concepts that questions are weighed with at most.
-const CONCEPTS: usize = 400;
+const CONCEPTS: usize = 200;
 
 /// Where an atom that has no place ends.
 pub(super) const NOWHERE: u8 = u8::MAX;
@@ -30,6 +31,8 @@ pub(super) struct Table<A> {
     pub(super) places: Vec<Vec<u8>>,
     /// The chances of these concepts, which sum to 1.
     pub(super) weights: Vec<f64>,
+    /// What was heard, as each concept sees it.
+    pub(super) tallies: Vec<Tally>,
 }
 
 impl<A: Clone + Ord + Hash> Table<A> {
@@ -37,6 +40,7 @@ impl<A: Clone + Ord + Hash> Table<A> {
     pub(super) fn new<C>(
         learner: &Learner<C>,
         posterior: &Posterior<C::Concept>,
+        heard: &[Vec<Heard<A>>],
         random: &mut ChaCha8Rng,
     ) -> Self
     where
@@ -80,11 +84,15 @@ impl<A: Clone + Ord + Hash> Table<A> {
         let places = (atoms.iter())
             .map(|atom| concepts.iter().map(|c| place(atom, c)).collect())
             .collect();
+        let tallies = (concepts.iter())
+            .map(|concept| tally(class, concept, heard))
+            .collect();
         Self {
             atoms,
             labels,
             places,
             weights,
+            tallies,
         }
     }
 }

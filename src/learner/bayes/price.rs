@@ -14,8 +14,6 @@ use super::value::Worth;
 use super::{entropy, tune};
 use crate::learner::Config;
 
-/// The cost of an equivalence query, in membership queries.
-const EQUIVALENCE: f64 = 4.0;
 /// What a counterexample tells, in membership queries.
 const COUNTEREXAMPLE: f64 = 1.0;
 /// How much likelier to be wrong a likeliest concept is than the posterior has
@@ -34,6 +32,7 @@ pub(super) fn is_worth_showing<C>(config: &Config, posterior: &Posterior<C>, oth
     // that the question tells.
     let refuted = (other.bits / unsure).min(1.0);
     let wrong = (doubt * tune("OVER", OVERCONFIDENCE)).min(1.0);
-    let spared = tune("EQCOST", EQUIVALENCE) - tune("CEX", COUNTEREXAMPLE);
-    wrong * refuted * spared * config.membership_cost <= (1.0 - wrong) * other.cost
+    let spared =
+        config.equivalence_cost - tune("CEX", COUNTEREXAMPLE) * config.membership_cost;
+    wrong * refuted * spared <= (1.0 - wrong) * other.cost
 }

@@ -2,9 +2,9 @@
 //! is expected to bring, for its cost.
 
 use super::atoms::{NOWHERE, Table};
-use super::posterior::Posterior;
-use super::{distributions, entropy, tune};
-use crate::concept::ConceptClass;
+use super::entropy;
+use crate::belief::Tally;
+use crate::concept::{ConceptClass, Ending};
 use crate::learner::{Learner, Question, Strategy};
 
 /// A question's information in bits, and its cost.
@@ -26,7 +26,6 @@ const NOTHING: f64 = 1e-9;
 /// The question that is worth most for its cost, if any is worth something.
 pub(super) fn best<C: ConceptClass>(
     learner: &Learner<C>,
-    posterior: &Posterior<C::Concept>,
     table: &Table<C::Atom>,
 ) -> Option<(Question<C::Atom, C::Concept>, Worth)> {
     let config = &learner.config;
@@ -52,43 +51,16 @@ pub(super) fn best<C: ConceptClass>(
     if !config.comparison_cost.is_finite() || config.strategy == Strategy::Membership {
         return best;
     }
-    let (different, place, label) = distributions(&posterior.odds);
-    let entropies = (entropy(&different), entropy(&place), entropy(&label));
-    let trust = tune("TRUST", 1.0);
+    let outlooks = outlooks(table);
+    let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
     for one in 0..table.atoms.len() {
         for other in 0..one {
             // Labels that are sure on both sides cannot be told apart.
-            let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
             if !open(accepts[one]) && !open(accepts[other]) {
                 continue;
             }
-            let [first, second, placed, labelled] = endings(table, other, one);
-            let differ = first + second;
-            let mut answers = [
-                first * different[0],
-                second * different[0],
-                0.0,
-                differ * different[1],
-            ];
-            let mut alike = [0.0; 4];
-            for index in 0..4 {
-                alike[index] = placed * place[index] + labelled * label[index];
-                answers[index] += alike[index];
-            }
-            let noise = differ * entropies.0;
-            let bits = entropy(&answers) - noise - placed * entropies.1 - labelled * entropies.2;
-            // What the answer says about labels alone. Whether two atoms end in
-            // the same place is worth something only beside it: otherwise
-            // questions about places could go on for ever.
-            let same = placed + labelled;
-            let about_labels = if same > 0.0 {
-                let shares = alike.map(|chance| chance / same);
-                entropy(&answers) - noise - same * entropy(&shares)
-            } else {
-                bits
-            };
             let worth = Worth {
-                bits: bits.min(2.0 * about_labels) * trust,
+                bits: comparison(table, &outlooks, other, one),
                 cost: config.comparison_cost,
             };
             if beats(&best, worth) {
@@ -103,27 +75,41 @@ pub(super) fn best<C: ConceptClass>(
     best
 }
 
+/// By the ending of two atoms: the chances of the four answers, and what these
+/// leave open in bits; times the chance of the concept.
+type Outlook = [[f64; 5]; 4];
+
+/// The outlook of every concept.
+fn outlooks<A>(table: &Table<A>) -> Vec<Outlook> {
+    let outlook = |(tally, weight): (&Tally, &f64)| {
+        Ending::ALL.map(|ending| {
+            let odds = tally.odds(ending);
+            let [first, second, equal, incomparable] = odds;
+            [first, second, equal, incomparable, entropy(&odds)].map(|part| part * weight)
+        })
+    };
+    table.tallies.iter().zip(&table.weights).map(outlook).collect()
+}
+
+/// The bits about the concept that the answer to a comparison is expected to
+/// bring.
+fn comparison<A>(table: &Table<A>, outlooks: &[Outlook], first: usize, second: usize) -> f64 {
+    let labels = table.labels[first].iter().zip(&table.labels[second]);
+    let places = table.places[first].iter().zip(&table.places[second]);
+    let mut sums = [0.0; 5];
+    for ((labels, places), outlook) in labels.zip(places).zip(outlooks) {
+        let same = places.0 == places.1 && *places.0 != NOWHERE;
+        let ending = Ending::of(*labels.0, *labels.1, same);
+        for (sum, part) in sums.iter_mut().zip(&outlook[ending as usize]) {
+            *sum += part;
+        }
+    }
+    entropy(&sums[..4]) - sums[4]
+}
+
 fn mass(labels: &[bool], weights: &[f64]) -> f64 {
     (labels.iter().zip(weights))
         .filter(|(label, _)| **label)
         .map(|(_, weight)| weight)
         .sum()
-}
-
-/// The chances of the four endings of two atoms.
-fn endings<A>(table: &Table<A>, first: usize, second: usize) -> [f64; 4] {
-    let mut masses = [0.0; 8];
-    let labels = table.labels[first].iter().zip(&table.labels[second]);
-    let places = table.places[first].iter().zip(&table.places[second]);
-    for ((labels, places), weight) in labels.zip(places).zip(&table.weights) {
-        let same = places.0 == places.1 && *places.0 != NOWHERE;
-        let code = usize::from(*labels.0) + 2 * usize::from(*labels.1) + 4 * usize::from(same);
-        masses[code] += weight;
-    }
-    [
-        masses[1],
-        masses[2],
-        masses[4] + masses[7],
-        masses[0] + masses[3],
-    ]
 }

@@ -1,0 +1,224 @@
+//! What is believed of a teacher: how comparisons are answered, and how often
+//! answers are wrong; and how likely answers are under these beliefs.
+//!
+//! Nobody knows beforehand how a teacher answers where both atoms are in the
+//! concept or neither is. Beliefs about that are Dirichlet distributions, and
+//! the chance of a series of answers is their integral (the chance of a Pólya
+//! urn), so that every concept explains all answers with the teacher that it
+//! makes most plausible. Knows neither automata nor learners.
+
+use crate::evidence::Fact;
+
+/// How two atoms end, as a concept has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Only the first is in the concept.
+    FirstOnly,
+    /// Only the second is.
+    SecondOnly,
+    /// Both end in the same place of the concept (for automata: a state).
+    SamePlace,
+    /// Both are in the concept or neither is, but they end in different places.
+    SameLabel,
+}
+
+impl Ending {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 4] = [
+        Self::FirstOnly,
+        Self::SecondOnly,
+        Self::SamePlace,
+        Self::SameLabel,
+    ];
+
+    /// Of atoms with these labels.
+    pub fn of(first: bool, second: bool, same_place: bool) -> Self {
+        match (first, second) {
+            (true, false) => Self::FirstOnly,
+            (false, true) => Self::SecondOnly,
+            _ if same_place => Self::SamePlace,
+            _ => Self::SameLabel,
+        }
+    }
+}
+
+/// Something a teacher said.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heard<A> {
+    /// What was said.
+    pub fact: Fact<A>,
+    /// Whether it is certainly true.
+    pub sure: bool,
+}
+
+/// What a comparison came to, seen from its first atom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The first is worse.
+    Worse,
+    /// Neither is better.
+    Equal,
+    /// They cannot be compared.
+    Incomparable,
+}
+
+/// The places of [`Tally::counts`]: for atoms with different labels agreeing
+/// and incomparable; then for the same place and for the same label strict,
+/// equal and incomparable.
+const CELLS: usize = 8;
+/// The cells of one urn each.
+const URNS: [std::ops::Range<usize>; 3] = [0..2, 2..5, 5..8];
+/// What is believed before any answer, as numbers of answers seen.
+const PRIOR: [f64; CELLS] = [4.5, 0.5, 1.2, 1.0, 0.8, 1.2, 1.0, 0.8];
+/// Answers that are wrong, and that are right.
+const ERRORS: [f64; 2] = [0.5, 9.5];
+/// The logarithm of the chance of something certain that is not true. It is not
+/// impossible, so that a search may pass through what it refutes.
+const REFUTED: f64 = -9.0;
+
+/// The answers of one teacher, as a concept sees them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    counts: [u16; CELLS],
+    /// Unsure answers that are wrong, and right.
+    errors: [u16; 2],
+    /// What is certain and not true.
+    refuted: u16,
+}
+
+impl Tally {
+    /// Takes note of a label that agrees with the concept or not.
+    pub fn label(&mut self, agrees: bool, sure: bool) {
+        self.certain(agrees, sure);
+    }
+
+    /// Takes note of the answer to a comparison of atoms that end like this.
+    pub fn comparison(&mut self, ending: Ending, verdict: Verdict, sure: bool) {
+        let cell = match (ending, verdict) {
+            (Ending::SamePlace, Verdict::Worse) => 2,
+            (Ending::SamePlace, Verdict::Equal) => 3,
+            (Ending::SamePlace, Verdict::Incomparable) => 4,
+            (Ending::SameLabel, Verdict::Worse) => 5,
+            (Ending::SameLabel, Verdict::Equal) => 6,
+            (Ending::SameLabel, Verdict::Incomparable) => 7,
+            (_, Verdict::Incomparable) => 1,
+            (Ending::SecondOnly, Verdict::Worse) => {
+                self.certain(true, sure);
+                0
+            }
+            (Ending::FirstOnly, Verdict::Worse) | (_, Verdict::Equal) => {
+                return self.certain(false, sure);
+            }
+        };
+        self.counts[cell] += 1;
+    }
+
+    fn certain(&mut self, right: bool, sure: bool) {
+        if sure {
+            self.refuted += u16::from(!right);
+        } else {
+            self.errors[usize::from(right)] += 1;
+        }
+    }
+
+    /// Whether something certain is not true of the concept.
+    pub fn is_refuted(&self) -> bool {
+        self.refuted > 0
+    }
+
+    /// The expected chances of the answers `first`, `second`, `equal` and
+    /// `incomparable` to a further comparison, by how its atoms end.
+    pub fn odds(&self, ending: Ending) -> [f64; 4] {
+        let share = |urn: usize, cell: usize| {
+            let of = |cell: usize| f64::from(self.counts[cell]) + PRIOR[cell];
+            of(cell) / URNS[urn].clone().map(of).sum::<f64>()
+        };
+        let strict = |urn: usize, from: usize| {
+            let strict = share(urn, from) / 2.0;
+            [strict, strict, share(urn, from + 1), share(urn, from + 2)]
+        };
+        match ending {
+            Ending::FirstOnly => [share(0, 0), 0.0, 0.0, share(0, 1)],
+            Ending::SecondOnly => [0.0, share(0, 0), 0.0, share(0, 1)],
+            Ending::SamePlace => strict(1, 2),
+            Ending::SameLabel => strict(2, 5),
+        }
+    }
+}
+
+/// The chances of answers under the beliefs about teachers.
+#[derive(Clone, Debug)]
+pub struct Belief {
+    /// By cell and number of answers: `ln(a (a+1) … (a+n−1))`.
+    cells: Vec<[f64; CELLS]>,
+    urns: Vec<[f64; URNS.len()]>,
+    errors: Vec<[f64; 2]>,
+    answers: Vec<f64>,
+}
+
+impl Belief {
+    /// For series of so many answers at most.
+    pub fn new(most: usize) -> Self {
+        let mut belief = Self {
+            cells: vec![[0.0; CELLS]],
+            urns: vec![[0.0; URNS.len()]],
+            errors: vec![[0.0; 2]],
+            answers: vec![0.0],
+        };
+        for n in 0..most {
+            let seen = n as f64;
+            let mut cells = belief.cells[n];
+            for (cell, prior) in PRIOR.iter().enumerate() {
+                cells[cell] += (prior + seen).ln();
+                // Either way round is as likely.
+                if cell == 2 || cell == 5 {
+                    cells[cell] -= std::f64::consts::LN_2;
+                }
+            }
+            let mut urns = belief.urns[n];
+            for (urn, cells) in URNS.iter().enumerate() {
+                urns[urn] += (PRIOR[cells.clone()].iter().sum::<f64>() + seen).ln();
+            }
+            let mut errors = belief.errors[n];
+            for (sum, prior) in errors.iter_mut().zip(ERRORS) {
+                *sum += (prior + seen).ln();
+            }
+            let answers = belief.answers[n] + (ERRORS.iter().sum::<f64>() + seen).ln();
+            belief.cells.push(cells);
+            belief.urns.push(urns);
+            belief.errors.push(errors);
+            belief.answers.push(answers);
+        }
+        belief
+    }
+
+    /// The logarithm of the chance of these answers.
+    ///
+    /// # Panics
+    ///
+    /// If there are more than [`Self::new`] was told.
+    pub fn log_chance(&self, tally: &Tally) -> f64 {
+        let mut sum = f64::from(tally.refuted) * REFUTED;
+        for (urn, cells) in URNS.iter().enumerate() {
+            let mut all = 0;
+            for cell in cells.clone() {
+                let count = usize::from(tally.counts[cell]);
+                sum += self.cells[count][cell];
+                all += count;
+            }
+            sum -= self.urns[all][urn];
+        }
+        let [wrong, right] = tally.errors.map(usize::from);
+        sum + self.errors[wrong][0] + self.errors[right][1] - self.answers[wrong + right]
+    }
+}
+
+/// The comparison that a fact reports, as its atoms and what it came to.
+pub fn compared<A>(fact: &Fact<A>) -> Option<(&A, &A, Verdict)> {
+    match fact {
+        Fact::Label { .. } => None,
+        Fact::Below { worse, better } => Some((worse, better, Verdict::Worse)),
+        Fact::Equal { first, second } => Some((first, second, Verdict::Equal)),
+        Fact::Incomparable { first, second } => Some((first, second, Verdict::Incomparable)),
+    }
+}

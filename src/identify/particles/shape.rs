@@ -1,0 +1,107 @@
+//! How automata look before anything is known: the prior over numbered tables
+//! whose states are all reachable.
+
+use crate::identify::growth::{Growth, Manner, add_logs};
+
+/// The logarithms of the shares of tables drawn evenly, of those whose edges
+/// mostly stay, and of those in which every symbol permutes the states (as
+/// where things are counted).
+const SHARES: [f64; 3] = [0.4, 0.4, 0.2];
+
+/// The prior of all sizes up to a bound.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    sizes: Vec<Size>,
+}
+
+/// The logarithms of the parts of one size's prior.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    even: f64,
+    staying: f64,
+    stay: f64,
+    permuting: f64,
+}
+
+impl Shape {
+    /// Automata with up to `most` states; one of a size is `decay` times as
+    /// likely as one state less.
+    pub(crate) fn new(symbols: usize, most: usize, decay: f64) -> Self {
+        let mut transitive: Vec<f64> = Vec::new();
+        let mut sizes = Vec::new();
+        for states in 1..=most {
+            let edges = (states * symbols) as f64;
+            let outputs = -(states as f64) * std::f64::consts::LN_2;
+            let size = outputs + states as f64 * decay.ln();
+            let growth = Manner::ALL.map(|manner| Growth::new(manner, states, symbols));
+            let reached = growth.each_ref().map(|g| g.completion(1, symbols));
+            let leave = growth.each_ref().map(|g| g.old(false));
+            let stay = growth.each_ref().map(|g| g.old(true));
+            let moved = |manner: usize| {
+                if states == 1 {
+                    edges * stay[manner]
+                } else {
+                    edges * leave[manner]
+                }
+            };
+            transitive.push(transitive_share(&transitive, symbols));
+            let factorial: f64 = (1..=states).map(|n| (n as f64).ln()).sum();
+            let shares = SHARES.map(f64::ln);
+            sizes.push(Size {
+                even: shares[0] + size + moved(0) - reached[0],
+                staying: shares[1] + size + moved(1) - reached[1],
+                stay: if states == 1 { 0.0 } else { stay[1] - leave[1] },
+                permuting: shares[2] + size
+                    - symbols as f64 * factorial
+                    - transitive[states - 1].ln(),
+            });
+        }
+        Self { sizes }
+    }
+
+    /// The number of states of the largest.
+    pub(crate) fn most(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// The logarithm of the prior of one numbered table (its states but the
+    /// first may be numbered in any way), all of whose states are reachable.
+    pub(crate) fn log_prior(&self, delta: &[u8], states: usize) -> f64 {
+        let size = &self.sizes[states - 1];
+        let symbols = delta.len() / states;
+        let mut loops = 0_u32;
+        let mut permuting = true;
+        for symbol in 0..symbols {
+            let mut seen = [0_u128; 2];
+            for state in 0..states {
+                let target = usize::from(delta[state * symbols + symbol]);
+                loops += u32::from(target == state);
+                let bit = 1_u128 << (target % 128);
+                permuting &= seen[target / 128] & bit == 0;
+                seen[target / 128] |= bit;
+            }
+        }
+        let plain = add_logs(size.even, size.staying + f64::from(loops) * size.stay);
+        if permuting {
+            add_logs(plain, size.permuting)
+        } else {
+            plain
+        }
+    }
+}
+
+/// The share of all tuples of permutations, one a symbol, of one point more than
+/// `smaller` knows that lead from any point to any other:
+/// `1 = Σₖ pₖ · k/n · C(n, k)^(1−symbols)`, by the size `k` of what is reached.
+fn transitive_share(smaller: &[f64], symbols: usize) -> f64 {
+    let n = smaller.len() + 1;
+    let mut share = 1.0;
+    let mut log_binomial = 0.0;
+    for (index, known) in smaller.iter().enumerate() {
+        let k = index + 1;
+        log_binomial += ((n - index) as f64 / k as f64).ln();
+        let power = (1.0 - symbols as f64) * log_binomial;
+        share -= known * k as f64 / n as f64 * power.exp();
+    }
+    share
+}
