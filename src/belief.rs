@@ -9,6 +9,20 @@
 
 use crate::evidence::Fact;
 
+/// How an atom ends in a concept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Whether the concept contains the atom.
+    pub inside: bool,
+    /// A number for the place in which it ends (for automata: the state), none
+    /// where nothing finer is known than inside and outside. Atoms of one place
+    /// have one label.
+    pub place: Option<u32>,
+    /// Of an atom outside, how long it did well: more is longer. Teachers often
+    /// prefer the failure that came later.
+    pub progress: u32,
+}
+
 /// How two atoms end, as a concept has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
@@ -16,27 +30,36 @@ pub enum Ending {
     FirstOnly,
     /// Only the second is.
     SecondOnly,
-    /// Both end in the same place of the concept (for automata: a state).
+    /// Both end in the same place.
     SamePlace,
-    /// Both are in the concept or neither is, but they end in different places.
+    /// Both are in the concept or neither is, and they end in different places.
     SameLabel,
+    /// Neither is in the concept, and the first did well for longer.
+    FirstFurther,
+    /// Neither is in the concept, and the second did well for longer.
+    SecondFurther,
 }
 
 impl Ending {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 6] = [
         Self::FirstOnly,
         Self::SecondOnly,
         Self::SamePlace,
         Self::SameLabel,
+        Self::FirstFurther,
+        Self::SecondFurther,
     ];
 
-    /// Of atoms with these labels.
-    pub fn of(first: bool, second: bool, same_place: bool) -> Self {
-        match (first, second) {
+    /// Of two atoms that end like this.
+    #[inline]
+    pub fn of(first: End, second: End) -> Self {
+        match (first.inside, second.inside) {
             (true, false) => Self::FirstOnly,
             (false, true) => Self::SecondOnly,
-            _ if same_place => Self::SamePlace,
+            (false, false) if first.progress > second.progress => Self::FirstFurther,
+            (false, false) if first.progress < second.progress => Self::SecondFurther,
+            _ if first.place.is_some() && first.place == second.place => Self::SamePlace,
             _ => Self::SameLabel,
         }
     }
@@ -63,13 +86,19 @@ pub enum Verdict {
 }
 
 /// The places of [`Tally::counts`]: for atoms with different labels agreeing
-/// and incomparable; then for the same place and for the same label strict,
-/// equal and incomparable.
-const CELLS: usize = 8;
+/// and incomparable; for the same place and for the same label strict, equal and
+/// incomparable; for failures of which one came later better, worse, equal and
+/// incomparable.
+const CELLS: usize = 12;
 /// The cells of one urn each.
-const URNS: [std::ops::Range<usize>; 3] = [0..2, 2..5, 5..8];
+const URNS: [std::ops::Range<usize>; 4] = [0..2, 2..5, 5..8, 8..12];
 /// What is believed before any answer, as numbers of answers seen.
-const PRIOR: [f64; CELLS] = [4.5, 0.5, 1.2, 1.0, 0.8, 1.2, 1.0, 0.8];
+const PRIOR: [f64; CELLS] = [
+    4.5, 0.5, // different labels
+    1.2, 1.0, 0.8, // the same place
+    1.2, 1.0, 0.8, // the same label
+    1.2, 0.6, 0.8, 0.6, // one failed later
+];
 /// Answers that are wrong, and that are right.
 const ERRORS: [f64; 2] = [0.5, 9.5];
 /// The logarithm of the chance of something certain that is not true. It is not
@@ -101,6 +130,10 @@ impl Tally {
             (Ending::SameLabel, Verdict::Worse) => 5,
             (Ending::SameLabel, Verdict::Equal) => 6,
             (Ending::SameLabel, Verdict::Incomparable) => 7,
+            (Ending::SecondFurther, Verdict::Worse) => 8,
+            (Ending::FirstFurther, Verdict::Worse) => 9,
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => 10,
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => 11,
             (_, Verdict::Incomparable) => 1,
             (Ending::SecondOnly, Verdict::Worse) => {
                 self.certain(true, sure);
@@ -142,6 +175,8 @@ impl Tally {
             Ending::SecondOnly => [0.0, share(0, 0), 0.0, share(0, 1)],
             Ending::SamePlace => strict(1, 2),
             Ending::SameLabel => strict(2, 5),
+            Ending::FirstFurther => [share(3, 8), share(3, 9), share(3, 10), share(3, 11)],
+            Ending::SecondFurther => [share(3, 9), share(3, 8), share(3, 10), share(3, 11)],
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use automata::{Alphabet, Dfa, Word};
 
-use super::{ConceptClass, Failure, Sample, Spread, Wish};
+use super::{ConceptClass, End, Failure, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
-use crate::identify::{Identifier, Settings};
+use crate::identify::{self, Identifier, Settings};
 
 /// All regular languages over an alphabet: the concepts are minimal automata,
 /// the atoms words, and the size is the number of states.
@@ -66,14 +66,8 @@ impl ConceptClass for DfaClass {
         self.identifier.spread(wish, budget)
     }
 
-    fn place(&self, concept: &Dfa, atom: &Word) -> Option<u32> {
-        // In a rejecting sink all is lost already; how and when it came to that
-        // tells words apart better than where they end.
-        let end = concept.run(atom);
-        let mut symbols = self.alphabet.symbols();
-        let sink =
-            !concept.is_accepting(end) && symbols.all(|symbol| concept.next(end, symbol) == end);
-        (!sink).then_some(end.index() as u32)
+    fn end(&self, concept: &Dfa, atom: &Word) -> End {
+        identify::end(concept, atom)
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

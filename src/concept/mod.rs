@@ -10,9 +10,9 @@ mod preorder;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use crate::evidence::{AnswerId, Budget, Fact};
+pub use crate::belief::{End, Ending, Heard};
 use crate::belief::{Tally, compared};
-pub use crate::belief::{Ending, Heard};
+use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
@@ -68,12 +68,14 @@ pub trait ConceptClass {
         budget: &mut Budget,
     ) -> Result<Spread<Self::Concept>, Failure>;
 
-    /// A number for the place in which an atom ends in the concept; atoms of one
-    /// place have one label. None where a class knows no finer places than in
-    /// and out.
-    fn place(&self, concept: &Self::Concept, atom: &Self::Atom) -> Option<u32> {
-        let _ = (concept, atom);
-        None
+    /// How an atom ends in the concept. Unless a class knows more, inside or
+    /// outside.
+    fn end(&self, concept: &Self::Concept, atom: &Self::Atom) -> End {
+        End {
+            inside: self.contains(concept, atom),
+            place: None,
+            progress: 0,
+        }
     }
 
     /// Up to `count` of the simplest atoms that `inside` contains and `outside`
@@ -101,10 +103,8 @@ pub fn tally<C: ConceptClass + ?Sized>(
             tally.label(class.contains(concept, atom) == *accepted, *sure);
         }
         if let Some((first, second, verdict)) = compared(fact) {
-            let place = class.place(concept, first);
-            let same = place.is_some() && place == class.place(concept, second);
-            let [one, other] = [first, second].map(|atom| class.contains(concept, atom));
-            tally.comparison(Ending::of(one, other, same), verdict, *sure);
+            let ending = Ending::of(class.end(concept, first), class.end(concept, second));
+            tally.comparison(ending, verdict, *sure);
         }
     }
     tally

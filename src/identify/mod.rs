@@ -7,8 +7,8 @@ mod contradiction;
 mod engine;
 mod enumerate;
 mod grow;
-mod growth;
 mod growing;
+mod growth;
 mod identifier;
 mod instance;
 mod labels;
@@ -20,8 +20,10 @@ mod sat;
 mod spread;
 mod tree;
 
-use automata::Dfa;
+use automata::{Dfa, StateId, Word};
 
+use self::particles::Step;
+use crate::belief::End;
 use crate::evidence::AnswerId;
 pub use identifier::Identifier;
 pub use spread::{Spread, Weighted, Wish};
@@ -100,4 +102,28 @@ pub struct Sample {
     pub automata: Vec<Dfa>,
     /// Whether there are no others of this size.
     pub complete: bool,
+}
+
+/// How a word ends in an automaton.
+pub fn end(dfa: &Dfa, word: &Word) -> End {
+    let is_sink = |state: StateId| {
+        let mut symbols = dfa.alphabet().symbols();
+        !dfa.is_accepting(state) && symbols.all(|symbol| dfa.next(state, symbol) == state)
+    };
+    let step = |state: StateId, depth: usize| Step {
+        depth: depth as u32,
+        accepting: dfa.is_accepting(state),
+        sunk: is_sink(state),
+    };
+    let mut state = dfa.start();
+    let mut progress = step(state, 0).progress(None);
+    for (read, symbol) in word.iter().enumerate() {
+        state = dfa.next(state, symbol);
+        progress = step(state, read + 1).progress(Some(progress));
+    }
+    End {
+        inside: dfa.is_accepting(state),
+        place: Some(state.index() as u32),
+        progress,
+    }
 }

@@ -1,13 +1,14 @@
 //! The consistent automata of several sizes, each with its chance after what
 //! was heard: listed where there are few, otherwise met by particles.
 
-use automata::{Dfa, Word};
+use std::collections::BTreeMap;
 
-use super::Sample;
+use automata::{Alphabet, Dfa, Word};
+
 use super::completion::{Table, canonical};
 use super::grow::Lister;
 use super::instance::Instance;
-use super::particles::{Particles, Posterior, table};
+use super::particles::Posterior;
 use super::problem::{FactId, Problem};
 use crate::belief::Heard;
 use crate::evidence::Budget;
@@ -49,77 +50,23 @@ pub struct Spread<C> {
 
 /// Nodes of the search that a listing may take for each automaton wanted.
 const NODES_PER_LISTED: u64 = 6;
-/// With fewer counts of consistent automata, those that a search found are
-/// taken for a start.
-const BARREN: u32 = 100;
 
-/// The spread of the facts `standing`, with which `smallest` are consistent and
-/// nothing smaller; nothing with more than `bound` states is wanted.
-pub(crate) fn gather(
+/// All minimal automata of `wish.sizes` sizes, of which the smallest is the
+/// smallest consistent one (and has `at_least` states or more), with their
+/// chances; none if that are too many, or it takes too much work to tell.
+pub(crate) fn list(
     problem: &Problem,
     standing: &[FactId],
-    smallest: &Sample,
-    bound: usize,
-    particles: &mut Option<Particles>,
-    wish: &Wish<'_, Word>,
-) -> Spread<Dfa> {
-    let symbols = problem.alphabet().len();
-    let moving = match particles.take() {
-        Some(known) if known.precede(wish.heard, wish.decay, wish.seed) => known,
-        _ => Particles::new(symbols, bound, wish.decay, wish.seed),
-    };
-    let moving = particles.insert(moving);
-    moving.hear(wish.heard);
-    let named = |(table, log_weight): (Table, f64)| Weighted {
-        concept: canonical(problem.alphabet(), &table),
-        log_weight,
-    };
-    if let Some(listed) = list(problem, standing, smallest, bound, wish) {
-        let posterior = Posterior::new(symbols, bound, wish);
-        let weighted = listed.into_iter().map(|table| {
-            let weight = posterior.log_chance(&table);
-            (table, weight)
-        });
-        return Spread {
-            concepts: weighted.map(named).collect(),
-            exact: true,
-            hurried: false,
-        };
-    }
-    let mut counts = moving.met().clone();
-    let hurried = counts.values().sum::<u32>() < BARREN;
-    if hurried {
-        for (table, count) in moving.visit(&smallest.automata) {
-            *counts.entry(table).or_insert(0) += count;
-        }
-    }
-    if counts.is_empty() {
-        counts.extend(smallest.automata.iter().map(|dfa| (table(dfa), 1)));
-    }
-    let counts = counts.into_iter();
-    Spread {
-        concepts: counts.map(|(table, count)| named((table, f64::from(count).ln()))).collect(),
-        exact: false,
-        hurried,
-    }
-}
-
-/// All minimal automata of so many sizes, if there are few.
-fn list(
-    problem: &Problem,
-    standing: &[FactId],
-    smallest: &Sample,
+    at_least: usize,
     bound: usize,
     wish: &Wish<'_, Word>,
-) -> Option<Vec<Table>> {
-    let least = smallest.automata.first()?.size();
-    if !smallest.complete || wish.listed == 0 {
-        return None;
-    }
-    let mut listed: Vec<Table> = smallest.automata.iter().map(table).collect();
+) -> Option<Spread<Dfa>> {
     let instance = Instance::new(problem, standing)?;
     let mut budget = Budget::new(wish.listed as u64 * NODES_PER_LISTED);
-    for states in least + 1..=(least + wish.sizes.max(1) - 1).min(bound) {
+    let mut listed: Vec<Table> = Vec::new();
+    let mut most = bound;
+    let mut states = at_least;
+    while states <= most {
         let ended = Lister::new(&instance, states).list(&mut budget, &mut |table| {
             if is_minimal(table) {
                 listed.push(breadth_first(table));
@@ -129,8 +76,35 @@ fn list(
         if !ended {
             return None;
         }
+        if most == bound && !listed.is_empty() {
+            most = bound.min(states + wish.sizes.max(1) - 1);
+        }
+        states += 1;
     }
-    Some(listed)
+    let posterior = Posterior::new(problem.alphabet().len(), bound, wish);
+    let weighted = |table: Table| Weighted {
+        log_weight: posterior.log_chance(&table),
+        concept: canonical(problem.alphabet(), &table),
+    };
+    Some(Spread {
+        concepts: listed.into_iter().map(weighted).collect(),
+        exact: true,
+        hurried: false,
+    })
+    .filter(|spread| !spread.concepts.is_empty())
+}
+
+/// The automata that particles met, by how often they met them.
+pub(crate) fn met(alphabet: &Alphabet, counts: &BTreeMap<Table, u32>) -> Spread<Dfa> {
+    let weighted = |(table, &count): (&Table, &u32)| Weighted {
+        concept: canonical(alphabet, table),
+        log_weight: f64::from(count).ln(),
+    };
+    Spread {
+        concepts: counts.iter().map(weighted).collect(),
+        exact: false,
+        hurried: false,
+    }
 }
 
 /// The same table with its states numbered breadth first.

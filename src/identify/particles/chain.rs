@@ -19,6 +19,8 @@ pub(crate) struct Machine {
     at: Vec<u8>,
     /// Whether a word uses the edge.
     used: Vec<bool>,
+    /// Room to work in.
+    progress: Vec<u32>,
     pub(crate) tally: Tally,
     /// The logarithms of prior and likelihood.
     prior: f64,
@@ -40,6 +42,7 @@ impl Machine {
             output,
             at: Vec::new(),
             used: Vec::new(),
+            progress: Vec::new(),
             tally: Tally::default(),
             prior: 0.0,
             likelihood: 0.0,
@@ -66,7 +69,7 @@ impl Machine {
     }
 
     fn judge(&mut self, ground: &Ground<'_>) {
-        self.tally = ground.script.tally(&self.delta, &self.output, &self.at);
+        self.tally = (ground.script).tally(&self.delta, &self.output, &self.at, &mut self.progress);
         self.likelihood = ground.belief.log_chance(&self.tally);
     }
 }
@@ -81,7 +84,12 @@ pub(crate) struct Mover {
 
 impl Mover {
     /// One step of the chain.
-    pub(crate) fn step(&mut self, machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) {
+    pub(crate) fn step(
+        &mut self,
+        machine: &mut Machine,
+        ground: &Ground<'_>,
+        rng: &mut ChaCha8Rng,
+    ) {
         let mut other = self.spare.take().unwrap_or_else(|| machine.clone());
         other.delta.clone_from(&machine.delta);
         other.output.clone_from(&machine.output);

@@ -14,6 +14,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::chain::{Ground, Machine, Mover};
 use self::script::Script;
+pub(crate) use self::script::Step;
 use self::shape::Shape;
 use super::completion::Table;
 use super::spread::{Wish, breadth_first, is_minimal};
@@ -25,8 +26,8 @@ const PARTICLES: usize = 128;
 /// counted.
 const ROUNDS: usize = 10;
 const SETTLING: usize = 2;
-/// Moves of all particles after every answer.
-const MOVES: usize = 64_000;
+/// Moves of all particles together after every answer, for each edge of one.
+const MOVES: usize = 4_000;
 /// The largest automata that particles consider.
 const LARGEST: usize = 40;
 
@@ -61,7 +62,11 @@ impl Particles {
         let ground = particles.ground();
         let mut machines = Vec::new();
         for number in 0..PARTICLES {
-            machines.push(Machine::new(vec![0; symbols], vec![number % 2 == 0], &ground));
+            machines.push(Machine::new(
+                vec![0; symbols],
+                vec![number % 2 == 0],
+                &ground,
+            ));
         }
         particles.machines = machines;
         particles
@@ -77,10 +82,10 @@ impl Particles {
     }
 
     /// Whether what was heard is the beginning of this.
-    pub(crate) fn precede(&self, heard: &[Vec<Heard<Word>>], decay: f64, seed: u64) -> bool {
-        self.seed == seed
-            && self.decay.to_bits() == decay.to_bits()
-            && heard.starts_with(&self.heard)
+    pub(crate) fn precede(&self, wish: &Wish<'_, Word>) -> bool {
+        self.seed == wish.seed
+            && self.decay.to_bits() == wish.decay.to_bits()
+            && wish.heard.starts_with(&self.heard)
     }
 
     /// Hears what is new in `heard`, answer by answer: where that leads does not
@@ -103,7 +108,9 @@ impl Particles {
     /// it has no part in what the particles come to.
     pub(crate) fn visit(&self, automata: &[Dfa]) -> BTreeMap<Table, u32> {
         let ground = self.ground();
-        let small = automata.iter().filter(|dfa| dfa.size() <= ground.shape.most());
+        let small = automata
+            .iter()
+            .filter(|dfa| dfa.size() <= ground.shape.most());
         let machine = |dfa: &Dfa| {
             let (delta, output) = table(dfa);
             Machine::new(delta.iter().map(|&t| t as u8).collect(), output, &ground)
@@ -159,11 +166,12 @@ impl Particles {
         let mut counts = BTreeMap::new();
         let ground = self.ground();
         let mut mover = Mover::default();
-        let moves = std::env::var("MOVES")
+        let moves: usize = std::env::var("MOVES")
             .ok()
             .and_then(|v| v.parse().ok())
             .unwrap_or(MOVES);
-        let moves = moves / PARTICLES / ROUNDS;
+        let edges: usize = machines.iter().map(|machine| machine.delta.len()).sum();
+        let moves = moves * edges / PARTICLES / PARTICLES / ROUNDS;
         for round in 0..ROUNDS {
             for machine in &mut *machines {
                 for _ in 0..moves {

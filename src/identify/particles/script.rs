@@ -2,7 +2,7 @@
 
 use automata::Word;
 
-use crate::belief::{Ending, Heard, Tally, Verdict, compared};
+use crate::belief::{End, Ending, Heard, Tally, Verdict, compared};
 use crate::evidence::Fact;
 
 /// A node of the tree; parents come before their children.
@@ -10,6 +10,7 @@ use crate::evidence::Fact;
 struct Node {
     parent: u32,
     symbol: u32,
+    depth: u32,
 }
 
 /// No state.
@@ -34,6 +35,7 @@ impl Script {
             nodes: vec![Node {
                 parent: 0,
                 symbol: 0,
+                depth: 0,
             }],
             children: vec![0; symbols],
             labels: Vec::new(),
@@ -61,6 +63,7 @@ impl Script {
                 self.nodes.push(Node {
                     parent: node,
                     symbol: symbol.index() as u32,
+                    depth: self.nodes[node as usize].depth + 1,
                 });
                 self.children.extend(std::iter::repeat_n(0, self.symbols));
             }
@@ -87,26 +90,76 @@ impl Script {
     }
 
     /// What was heard, as a table with these outputs sees it whose states at the
-    /// nodes are `at`. In a rejecting sink words of all kinds end: it is no place
-    /// that they share.
-    pub(crate) fn tally(&self, delta: &[u8], output: &[bool], at: &[u8]) -> Tally {
+    /// nodes are `at`. `progress` is room to work in.
+    pub(crate) fn tally(
+        &self,
+        delta: &[u8],
+        output: &[bool],
+        at: &[u8],
+        progress: &mut Vec<u32>,
+    ) -> Tally {
         let mut tally = Tally::default();
+        for &(node, accepted, sure) in &self.labels {
+            let out = output[usize::from(at[node as usize])];
+            tally.label(out == accepted, sure);
+        }
+        if self.comparisons.is_empty() {
+            return tally;
+        }
         let is_sink = |state: &usize| {
             let row = state * self.symbols..(state + 1) * self.symbols;
             !output[*state] && delta[row].iter().all(|&t| usize::from(t) == *state)
         };
         let sink = (0..output.len()).find(is_sink).map_or(NOWHERE, |s| s as u8);
-        for &(node, accepted, sure) in &self.labels {
-            let out = output[usize::from(at[node as usize])];
-            tally.label(out == accepted, sure);
+        progress.clear();
+        for (node, &state) in self.nodes.iter().zip(at) {
+            let before = progress.get(node.parent as usize).copied();
+            let step = Step {
+                depth: node.depth,
+                accepting: output[usize::from(state)],
+                sunk: state == sink,
+            };
+            progress.push(step.progress(before));
         }
+        let end = |node: u32| {
+            let state = at[node as usize];
+            End {
+                inside: output[usize::from(state)],
+                place: Some(state.into()),
+                progress: progress[node as usize],
+            }
+        };
         for &(first, second, verdict, sure) in &self.comparisons {
-            let (first, second) = (at[first as usize], at[second as usize]);
-            let (one, other) = (output[usize::from(first)], output[usize::from(second)]);
-            let same = first == second && first != sink;
-            let ending = Ending::of(one, other, same);
-            tally.comparison(ending, verdict, sure);
+            tally.comparison(Ending::of(end(first), end(second)), verdict, sure);
         }
         tally
+    }
+}
+
+/// One step of a word's run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    /// How many symbols were read.
+    pub(crate) depth: u32,
+    /// Whether the state that was reached accepts.
+    pub(crate) accepting: bool,
+    /// Whether it is a rejecting sink.
+    pub(crate) sunk: bool,
+}
+
+/// More than the length of any word.
+const AFLOAT: u32 = 1 << 16;
+
+impl Step {
+    /// How long the word did well (section 5.3, "Tomita languages"): until it
+    /// fell into a rejecting sink; what never did comes after all that did, by
+    /// its longest accepted prefix.
+    pub(crate) fn progress(self, before: Option<u32>) -> u32 {
+        match before {
+            Some(sunk) if self.sunk && sunk < AFLOAT => sunk,
+            _ if self.sunk => self.depth,
+            _ if self.accepting => AFLOAT + self.depth + 1,
+            before => before.unwrap_or(AFLOAT),
+        }
     }
 }

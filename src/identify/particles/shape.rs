@@ -32,7 +32,7 @@ impl Shape {
         for states in 1..=most {
             let edges = (states * symbols) as f64;
             let outputs = -(states as f64) * std::f64::consts::LN_2;
-            let size = outputs + states as f64 * decay.ln();
+            let size = outputs + size_prior(states, decay);
             let growth = Manner::ALL.map(|manner| Growth::new(manner, states, symbols));
             let reached = growth.each_ref().map(|g| g.completion(1, symbols));
             let leave = growth.each_ref().map(|g| g.old(false));
@@ -87,6 +87,20 @@ impl Shape {
         } else {
             plain
         }
+    }
+}
+
+fn size_prior(states: usize, decay: f64) -> f64 {
+    let env = |name: &str, default: f64| {
+        std::env::var(name)
+            .ok()
+            .and_then(|v| v.parse().ok())
+            .unwrap_or(default)
+    };
+    match states {
+        1 => env("P1", 0.05_f64).ln(),
+        2 => env("P2", 1.0_f64).ln(),
+        n => (n as f64 - 3.0) * decay.ln(),
     }
 }
 

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::posterior::Posterior;
 use super::tune;
-use crate::belief::{Heard, Tally};
+use crate::belief::{End, Heard, Tally};
 use crate::concept::{ConceptClass, tally};
 use crate::learner::Learner;
 
@@ -19,16 +19,11 @@ const PAIRS: usize = 16;
 /// The concepts that questions are weighed with at most.
 const CONCEPTS: usize = 200;
 
-/// Where an atom that has no place ends.
-pub(super) const NOWHERE: u8 = u8::MAX;
-
 /// How atoms end in the likely concepts.
 pub(super) struct Table<A> {
     pub(super) atoms: Vec<A>,
-    /// For every atom and concept: the label in the lowest bit, above it the
-    /// place.
-    pub(super) labels: Vec<Vec<bool>>,
-    pub(super) places: Vec<Vec<u8>>,
+    /// By atom and then by concept.
+    pub(super) ends: Vec<Vec<End>>,
     /// The chances of these concepts, which sum to 1.
     pub(super) weights: Vec<f64>,
     /// What was heard, as each concept sees it.
@@ -74,23 +69,15 @@ impl<A: Clone + Ord + Hash> Table<A> {
         }
         atoms.sort_unstable();
         atoms.dedup();
-        let labels = (atoms.iter())
-            .map(|atom| concepts.iter().map(|c| class.contains(c, atom)).collect())
-            .collect();
-        let place = |atom: &A, concept: &C::Concept| match class.place(concept, atom) {
-            Some(place) if place < u32::from(NOWHERE) => place as u8,
-            _ => NOWHERE,
-        };
-        let places = (atoms.iter())
-            .map(|atom| concepts.iter().map(|c| place(atom, c)).collect())
+        let ends = (atoms.iter())
+            .map(|atom| concepts.iter().map(|c| class.end(c, atom)).collect())
             .collect();
         let tallies = (concepts.iter())
             .map(|concept| tally(class, concept, heard))
             .collect();
         Self {
             atoms,
-            labels,
-            places,
+            ends,
             weights,
             tallies,
         }

@@ -19,15 +19,23 @@ impl<C> Posterior<C> {
     pub(super) fn new(spread: Spread<C>) -> Self {
         let mut weighted = spread.concepts;
         weighted.sort_by(|one, other| other.log_weight.total_cmp(&one.log_weight));
-        let top = weighted.first().map_or(0.0, |likeliest| likeliest.log_weight);
+        let top = weighted
+            .first()
+            .map_or(0.0, |likeliest| likeliest.log_weight);
         let share = |log_weight: f64| (log_weight - top).exp();
         weighted.retain(|concept| share(concept.log_weight) >= NEGLIGIBLE);
-        let sum: f64 = weighted.iter().map(|concept| share(concept.log_weight)).sum();
+        let sum: f64 = weighted
+            .iter()
+            .map(|concept| share(concept.log_weight))
+            .sum();
         Self {
             weights: (weighted.iter())
                 .map(|concept| share(concept.log_weight) / sum)
                 .collect(),
-            concepts: weighted.into_iter().map(|concept| concept.concept).collect(),
+            concepts: weighted
+                .into_iter()
+                .map(|concept| concept.concept)
+                .collect(),
             exact: spread.exact,
         }
     }

@@ -32,7 +32,6 @@ pub(super) fn is_worth_showing<C>(config: &Config, posterior: &Posterior<C>, oth
     // that the question tells.
     let refuted = (other.bits / unsure).min(1.0);
     let wrong = (doubt * tune("OVER", OVERCONFIDENCE)).min(1.0);
-    let spared =
-        config.equivalence_cost - tune("CEX", COUNTEREXAMPLE) * config.membership_cost;
+    let spared = config.equivalence_cost - tune("CEX", COUNTEREXAMPLE) * config.membership_cost;
     wrong * refuted * spared <= (1.0 - wrong) * other.cost
 }

@@ -1,9 +1,9 @@
 //! What a question is worth: the information about the concept that its answer
 //! is expected to bring, for its cost.
 
-use super::atoms::{NOWHERE, Table};
+use super::atoms::Table;
 use super::entropy;
-use crate::belief::Tally;
+use crate::belief::{End, Tally};
 use crate::concept::{ConceptClass, Ending};
 use crate::learner::{Learner, Question, Strategy};
 
@@ -36,8 +36,8 @@ pub(super) fn best<C: ConceptClass>(
                 .as_ref()
                 .is_none_or(|(_, known)| worth.rate() > known.rate() * (1.0 + 1e-9))
     };
-    let accepts: Vec<f64> = (table.labels.iter())
-        .map(|labels| mass(labels, &table.weights))
+    let accepts: Vec<f64> = (table.ends.iter())
+        .map(|ends| mass(ends, &table.weights))
         .collect();
     for (atom, &accept) in table.atoms.iter().zip(&accepts) {
         let worth = Worth {
@@ -51,65 +51,93 @@ pub(super) fn best<C: ConceptClass>(
     if !config.comparison_cost.is_finite() || config.strategy == Strategy::Membership {
         return best;
     }
-    let outlooks = outlooks(table);
+    let outlook = Outlook::new(table);
     let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
+    // Labels that are sure on both sides cannot be told apart.
+    let stride = table.weights.len().div_ceil(ROUGHLY);
+    let mut pairs: Vec<(f32, usize, usize)> = Vec::new();
     for one in 0..table.atoms.len() {
         for other in 0..one {
-            // Labels that are sure on both sides cannot be told apart.
-            if !open(accepts[one]) && !open(accepts[other]) {
-                continue;
+            if open(accepts[one]) || open(accepts[other]) {
+                let (first, second) = (&table.ends[other], &table.ends[one]);
+                pairs.push((outlook.bits(first, second, stride), other, one));
             }
-            let worth = Worth {
-                bits: comparison(table, &outlooks, other, one),
-                cost: config.comparison_cost,
-            };
-            if beats(&best, worth) {
-                let (first, second) = (&table.atoms[other], &table.atoms[one]);
-                if learner.evidence.may_compare(first, second) {
-                    let (first, second) = (first.clone(), second.clone());
-                    best = Some((Question::Comparison { first, second }, worth));
-                }
-            }
+        }
+    }
+    pairs.sort_by(|(one, ..), (other, ..)| other.total_cmp(one));
+    let asked = |&(_, one, other): &(f32, usize, usize)| {
+        let (first, second) = (&table.atoms[one], &table.atoms[other]);
+        learner.evidence.may_compare(first, second)
+    };
+    for (_, one, other) in pairs.into_iter().filter(asked).take(CLOSELY) {
+        let (first, second) = (&table.ends[one], &table.ends[other]);
+        let worth = Worth {
+            bits: f64::from(outlook.bits(first, second, 1)),
+            cost: config.comparison_cost,
+        };
+        if beats(&best, worth) {
+            let (first, second) = (table.atoms[one].clone(), table.atoms[other].clone());
+            best = Some((Question::Comparison { first, second }, worth));
         }
     }
     best
 }
 
-/// By the ending of two atoms: the chances of the four answers, and what these
-/// leave open in bits; times the chance of the concept.
-type Outlook = [[f64; 5]; 4];
+/// The concepts by which pairs are looked at first, and the pairs that are
+/// looked at more closely then.
+const ROUGHLY: usize = 48;
+const CLOSELY: usize = 256;
 
-/// The outlook of every concept.
-fn outlooks<A>(table: &Table<A>) -> Vec<Outlook> {
-    let outlook = |(tally, weight): (&Tally, &f64)| {
-        Ending::ALL.map(|ending| {
-            let odds = tally.odds(ending);
-            let [first, second, equal, incomparable] = odds;
-            [first, second, equal, incomparable, entropy(&odds)].map(|part| part * weight)
-        })
-    };
-    table.tallies.iter().zip(&table.weights).map(outlook).collect()
+/// What the concepts expect of comparisons.
+struct Outlook {
+    /// By concept and by the ending of two atoms: the chances of the four
+    /// answers and what these leave open in bits, times the concept's chance.
+    /// Eight numbers fill a register.
+    parts: Vec<[[f32; 8]; 6]>,
 }
 
-/// The bits about the concept that the answer to a comparison is expected to
-/// bring.
-fn comparison<A>(table: &Table<A>, outlooks: &[Outlook], first: usize, second: usize) -> f64 {
-    let labels = table.labels[first].iter().zip(&table.labels[second]);
-    let places = table.places[first].iter().zip(&table.places[second]);
-    let mut sums = [0.0; 5];
-    for ((labels, places), outlook) in labels.zip(places).zip(outlooks) {
-        let same = places.0 == places.1 && *places.0 != NOWHERE;
-        let ending = Ending::of(*labels.0, *labels.1, same);
-        for (sum, part) in sums.iter_mut().zip(&outlook[ending as usize]) {
-            *sum += part;
+impl Outlook {
+    fn new<A>(table: &Table<A>) -> Self {
+        let part = |(tally, &weight): (&Tally, &f64)| {
+            Ending::ALL.map(|ending| {
+                let odds = tally.odds(ending);
+                let mut part = [0.0; 8];
+                for (part, chance) in part.iter_mut().zip(odds) {
+                    *part = (chance * weight) as f32;
+                }
+                part[4] = (entropy(&odds) * weight) as f32;
+                part[5] = weight as f32;
+                part
+            })
+        };
+        Self {
+            parts: table.tallies.iter().zip(&table.weights).map(part).collect(),
         }
     }
-    entropy(&sums[..4]) - sums[4]
+
+    /// The bits about the concept that the answer to a comparison is expected to
+    /// bring, by every `stride`-th concept.
+    fn bits(&self, first: &[End], second: &[End], stride: usize) -> f32 {
+        let mut sums = [0.0_f32; 8];
+        for ((&first, &second), part) in first.iter().zip(second).zip(&self.parts).step_by(stride) {
+            let part = &part[Ending::of(first, second) as usize];
+            for (sum, part) in sums.iter_mut().zip(part) {
+                *sum += part;
+            }
+        }
+        let all = sums[5].max(f32::MIN_POSITIVE);
+        let entropy: f32 = (sums[..4].iter())
+            .map(|sum| sum / all)
+            .filter(|chance| *chance > 0.0)
+            .map(|chance| -chance * chance.log2())
+            .sum();
+        entropy - sums[4] / all
+    }
 }
 
-fn mass(labels: &[bool], weights: &[f64]) -> f64 {
-    (labels.iter().zip(weights))
-        .filter(|(label, _)| **label)
+fn mass(ends: &[End], weights: &[f64]) -> f64 {
+    (ends.iter().zip(weights))
+        .filter(|(end, _)| end.inside)
         .map(|(_, weight)| weight)
         .sum()
 }
