@@ -8,7 +8,7 @@ use automata::{Alphabet, Dfa, Word};
 use super::contradiction::{self, Finding};
 use super::engine::{Engine, Query, Verdict};
 use super::enumerate::Enumerator;
-use super::particles::{Particles, table};
+use super::particles::Particles;
 use super::problem::{FactId, Problem};
 use super::spread::{self, Spread, Wish};
 use super::{Cause, Contradiction, EngineChoice, Failure, Sample, Settings, sat};
@@ -20,10 +20,8 @@ use crate::evidence::{AnswerId, Budget, Fact};
 /// second half of a smaller budget.
 const ENUMERATED_UNITS: u64 = 100_000_000;
 
-/// The smallest automata that a spread has by search, where particles fail.
+/// The smallest automata that a spread has by search, where chains fail.
 const SEARCHED: usize = 64;
-/// Particles fail where they meet consistent automata less often than this.
-const SCARCE: u32 = 100;
 
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
@@ -174,26 +172,17 @@ impl Identifier {
             known.unwrap_or_else(|| Particles::new(symbols, bound, wish.decay, wish.seed));
         particles.hear(wish.heard);
         let listed = spread::list(&self.problem, &self.standing, self.at_least, bound, wish);
-        let mut counts = particles.met().clone();
-        let alphabet = self.problem.alphabet().clone();
-        let scarce = counts.values().sum::<u32>() < SCARCE;
-        let spread = match listed {
-            Some(spread) => spread,
-            None if !scarce => spread::met(&alphabet, &counts),
-            None => {
-                // Whether anything is consistent, only a search can tell.
-                let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
-                for (table, count) in particles.visit(&smallest.automata) {
-                    *counts.entry(table).or_insert(0) += count;
-                }
-                counts.extend(smallest.automata.iter().map(|dfa| (table(dfa), 1)));
-                let mut spread = spread::met(&alphabet, &counts);
-                spread.hurried = true;
-                spread
-            }
-        };
+        let met = spread::met(self.problem.alphabet(), particles.met());
         self.particles = Some(particles);
-        Ok(spread)
+        if let Some(listed) = listed {
+            return Ok(listed);
+        }
+        if !met.concepts.is_empty() {
+            return Ok(met);
+        }
+        // Whether anything is consistent, only a search can tell.
+        let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
+        Ok(spread::found(&smallest, bound, wish))
     }
 
     /// Why no automaton within the bound is consistent.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use automata::{Alphabet, Dfa, Word};
 
+use super::Sample;
 use super::completion::{Table, canonical};
 use super::grow::Lister;
 use super::instance::Instance;
@@ -94,17 +95,42 @@ pub(crate) fn list(
     .filter(|spread| !spread.concepts.is_empty())
 }
 
-/// The automata that particles met, by how often they met them.
-pub(crate) fn met(alphabet: &Alphabet, counts: &BTreeMap<Table, u32>) -> Spread<Dfa> {
-    let weighted = |(table, &count): (&Table, &u32)| Weighted {
+/// The automata that chains met, by their shares.
+pub(crate) fn met(alphabet: &Alphabet, shares: &BTreeMap<Table, f64>) -> Spread<Dfa> {
+    let weighted = |(table, &share): (&Table, &f64)| Weighted {
         concept: canonical(alphabet, table),
-        log_weight: f64::from(count).ln(),
+        log_weight: share.ln(),
     };
     Spread {
-        concepts: counts.iter().map(weighted).collect(),
+        concepts: shares.iter().map(weighted).collect(),
         exact: false,
         hurried: false,
     }
+}
+
+/// What a search found, where chains met nothing consistent.
+pub(crate) fn found(smallest: &Sample, bound: usize, wish: &Wish<'_, Word>) -> Spread<Dfa> {
+    let symbols = (smallest.automata.first()).map_or(1, |dfa| dfa.alphabet().len());
+    let posterior = Posterior::new(symbols, bound, wish);
+    let weighted = |dfa: &Dfa| Weighted {
+        log_weight: posterior.log_chance(&table(dfa)),
+        concept: dfa.clone(),
+    };
+    Spread {
+        concepts: smallest.automata.iter().map(weighted).collect(),
+        exact: false,
+        hurried: true,
+    }
+}
+
+/// The table of an automaton.
+fn table(dfa: &Dfa) -> Table {
+    let delta = dfa.states().flat_map(|state| {
+        let targets = dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
+        targets.map(|target| target.index() as u32)
+    });
+    let output = dfa.states().map(|state| dfa.is_accepting(state));
+    (delta.collect(), output.collect())
 }
 
 /// The same table with its states numbered breadth first.

@@ -43,6 +43,11 @@ impl<C: ConceptClass> Learner<C> {
         if self.config.strategy == Strategy::Bayes {
             return self.weigh();
         }
+        self.learn_by_elimination()
+    }
+
+    /// The next move by Algorithm 4: concepts are eliminated until one is left.
+    pub(super) fn learn_by_elimination(&mut self) -> Move<C> {
         let mut random = self.generator();
         let mut budget = Budget::new(self.config.budget);
         let sample = match self.class.sample(SAMPLE, random.random(), &mut budget) {
@@ -99,7 +104,7 @@ impl<C: ConceptClass> Learner<C> {
 
     /// Whether comparisons are asked at all.
     fn compares(&self) -> bool {
-        self.config.strategy == Strategy::Thesis && self.config.comparison_cost.is_finite()
+        self.config.strategy != Strategy::Membership && self.config.comparison_cost.is_finite()
     }
 
     /// Algorithm 5: lets the bandit choose between the candidates.

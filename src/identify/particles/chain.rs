@@ -87,9 +87,10 @@ impl Mover {
     pub(crate) fn step(
         &mut self,
         machine: &mut Machine,
+        power: f64,
         ground: &Ground<'_>,
         rng: &mut ChaCha8Rng,
-    ) {
+    ) -> bool {
         let mut other = self.spare.take().unwrap_or_else(|| machine.clone());
         other.delta.clone_from(&machine.delta);
         other.output.clone_from(&machine.output);
@@ -127,12 +128,13 @@ impl Mover {
                 other.hear(ground);
             }
             let draw = rng.random::<f64>().ln();
-            draw < allowed + other.likelihood - machine.likelihood
+            draw < allowed + power * (other.likelihood - machine.likelihood)
         });
         if accepted {
             std::mem::swap(machine, &mut other);
         }
         self.spare = Some(other);
+        accepted
     }
 
     fn is_reachable(&mut self, machine: &Machine, symbols: usize) -> bool {

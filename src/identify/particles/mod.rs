@@ -1,6 +1,7 @@
 //! A sample of the posterior over automata of several sizes, carried on from
-//! answer to answer: sequential Monte Carlo with Markov chain moves (Chopin,
-//! "A sequential particle filter method for static models", 2002).
+//! answer to answer: Markov chains at several temperatures that exchange their
+//! places (parallel tempering: Geyer, "Markov chain Monte Carlo maximum
+//! likelihood", 1991).
 
 mod chain;
 mod script;
@@ -8,7 +9,7 @@ mod shape;
 
 use std::collections::BTreeMap;
 
-use automata::{Dfa, Word};
+use automata::Word;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -20,18 +21,30 @@ use super::completion::Table;
 use super::spread::{Wish, breadth_first, is_minimal};
 use crate::belief::{Belief, Heard};
 
-/// How many machines there are.
-const PARTICLES: usize = 128;
-/// Rounds of moves after every answer; in all but the first two each particle is
-/// counted.
-const ROUNDS: usize = 10;
-const SETTLING: usize = 2;
-/// Moves of all particles together after every answer, for each edge of one.
-const MOVES: usize = 4_000;
-/// The largest automata that particles consider.
+/// The powers to which the likelihood is raised: hot chains roam, and bring the
+/// cold ones what they find.
+const LEVELS: [f64; 8] = [1.0, 0.8, 0.62, 0.47, 0.35, 0.25, 0.17, 0.1];
+/// From so many of the levels what is met is remembered.
+const REMEMBERED: usize = 3;
+/// Chains of each level.
+const LADDERS: usize = 8;
+/// Moves of a chain before it may exchange its place.
+const LEG: usize = 24;
+/// Moves of all chains together after every answer.
+const MOVES: usize = 40_000;
+/// Automata up to this size take so many moves; larger ones more, up to
+/// [`MOST`] times as many.
+const SMALL: f64 = 6.0;
+const MOST: f64 = 6.0;
+/// A share of the posterior that does not matter.
+const NEGLIGIBLE: f64 = 1e-7;
+/// A ladder is stuck if the best automaton in it is less likely than that of
+/// another by this logarithm.
+const HOPELESS: f64 = 6.0;
+/// The largest automata that are considered.
 const LARGEST: usize = 40;
 
-/// The particles, and what they have heard.
+/// The chains, and what they have heard.
 pub(crate) struct Particles {
     symbols: usize,
     seed: u64,
@@ -40,13 +53,15 @@ pub(crate) struct Particles {
     heard: Vec<Vec<Heard<Word>>>,
     script: Script,
     belief: Belief,
-    machines: Vec<Machine>,
-    /// How often each automaton was met in the last answer's rounds.
-    counts: BTreeMap<Table, u32>,
+    /// By ladder and level.
+    machines: Vec<[Machine; LEVELS.len()]>,
+    /// The consistent automata met since the last answer, with their shares of the
+    /// posterior, up to a number that all share.
+    met: BTreeMap<Table, f64>,
 }
 
 impl Particles {
-    /// Particles that heard nothing.
+    /// Chains that heard nothing.
     pub(crate) fn new(symbols: usize, most: usize, decay: f64, seed: u64) -> Self {
         let mut particles = Self {
             symbols,
@@ -57,18 +72,12 @@ impl Particles {
             script: Script::new(symbols),
             belief: Belief::new(0),
             machines: Vec::new(),
-            counts: BTreeMap::new(),
+            met: BTreeMap::new(),
         };
         let ground = particles.ground();
-        let mut machines = Vec::new();
-        for number in 0..PARTICLES {
-            machines.push(Machine::new(
-                vec![0; symbols],
-                vec![number % 2 == 0],
-                &ground,
-            ));
-        }
-        particles.machines = machines;
+        let trivial =
+            |number: usize| Machine::new(vec![0; symbols], vec![number % 2 == 0], &ground);
+        particles.machines = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
         particles
     }
 
@@ -97,112 +106,107 @@ impl Particles {
                 self.script.add(heard);
             }
             self.belief = Belief::new(self.script.len());
-            self.weigh();
-            let mut machines = std::mem::take(&mut self.machines);
-            self.counts = self.travel(&mut machines);
-            self.machines = machines;
+            self.travel();
         }
     }
 
-    /// How often automata are met on the way from these, which are consistent;
-    /// it has no part in what the particles come to.
-    pub(crate) fn visit(&self, automata: &[Dfa]) -> BTreeMap<Table, u32> {
-        let ground = self.ground();
-        let small = automata
-            .iter()
-            .filter(|dfa| dfa.size() <= ground.shape.most());
-        let machine = |dfa: &Dfa| {
-            let (delta, output) = table(dfa);
-            Machine::new(delta.iter().map(|&t| t as u8).collect(), output, &ground)
-        };
-        let mut machines: Vec<Machine> = small.map(machine).collect();
-        let found = machines.len().min(PARTICLES);
-        for place in found..if found == 0 { 0 } else { PARTICLES } {
-            machines.push(machines[place % found].clone());
-        }
-        self.travel(&mut machines)
-    }
-
-    fn rng(&self) -> ChaCha8Rng {
+    /// Moves all chains and remembers what is met.
+    fn travel(&mut self) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(self.heard.len() as u64);
-        rng
-    }
-
-    /// Hears, and draws the particles anew by how well they explain what is new.
-    fn weigh(&mut self) {
         let mut machines = std::mem::take(&mut self.machines);
-        let before: Vec<f64> = machines.iter().map(|m| m.likelihood).collect();
+        let mut met = BTreeMap::new();
         let ground = self.ground();
-        for machine in &mut machines {
+        let mut states = 0;
+        for machine in machines.iter_mut().flatten() {
             machine.hear(&ground);
+            states += machine.states();
         }
-        let gains: Vec<f64> = (machines.iter().zip(before))
-            .map(|(machine, before)| machine.likelihood - before)
-            .collect();
-        let top = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = gains.iter().map(|gain| (gain - top).exp()).collect();
-        let step = weights.iter().sum::<f64>() / machines.len() as f64;
-        let mut next = self.rng().random::<f64>() * step;
-        let mut sum = 0.0;
-        let mut drawn = Vec::with_capacity(machines.len());
-        for (machine, weight) in machines.iter().zip(weights) {
-            sum += weight;
-            while sum > next && drawn.len() < machines.len() {
-                drawn.push(machine.clone());
-                next += step;
-            }
-        }
-        while drawn.len() < machines.len() {
-            drawn.push(machines[machines.len() - 1].clone());
-        }
-        self.machines = drawn;
-    }
-
-    /// Moves all machines and counts where they are.
-    fn travel(&self, machines: &mut [Machine]) -> BTreeMap<Table, u32> {
-        let mut rng = self.rng();
-        let _: f64 = rng.random();
-        let mut counts = BTreeMap::new();
-        let ground = self.ground();
-        let mut mover = Mover::default();
-        let moves: usize = std::env::var("MOVES")
+        let chains = LADDERS * LEVELS.len();
+        let states = states as f64 / chains as f64;
+        let env: f64 = std::env::var("MOVES")
             .ok()
             .and_then(|v| v.parse().ok())
-            .unwrap_or(MOVES);
-        let edges: usize = machines.iter().map(|machine| machine.delta.len()).sum();
-        let moves = moves * edges / PARTICLES / PARTICLES / ROUNDS;
-        for round in 0..ROUNDS {
-            for machine in &mut *machines {
-                for _ in 0..moves {
-                    mover.step(machine, &ground, &mut rng);
+            .unwrap_or(MOVES as f64);
+        let moves = env * (states / SMALL).powi(3).clamp(1.0, MOST);
+        let legs = moves as usize / chains / LEG;
+        let mut mover = Mover::default();
+        for ladder in &mut machines {
+            let mut found = BTreeMap::new();
+            for leg in 0..legs {
+                for (level, machine) in ladder.iter_mut().enumerate() {
+                    for step in 0..LEG {
+                        let moved = mover.step(machine, LEVELS[level], &ground, &mut rng);
+                        if level < REMEMBERED && (moved || step == 0) && !machine.tally.is_refuted()
+                        {
+                            remember(&mut found, machine);
+                        }
+                    }
                 }
-                if round >= SETTLING && !machine.tally.is_refuted() {
-                    let delta = machine.delta.iter().map(|&t| u32::from(t)).collect();
-                    let table: Table = (delta, machine.output.clone());
-                    if is_minimal(&table) {
-                        *counts.entry(breadth_first(&table)).or_insert(0) += 1;
+                // Neighbours exchange their places, even and odd in turn.
+                for level in (leg % 2..LEVELS.len() - 1).step_by(2) {
+                    let gain = ladder[level + 1].likelihood - ladder[level].likelihood;
+                    let chance = (LEVELS[level] - LEVELS[level + 1]) * gain;
+                    if rng.random::<f64>().ln() < chance {
+                        ladder.swap(level, level + 1);
                     }
                 }
             }
+            share(&mut met, found);
         }
-        counts
+        migrate(&mut machines);
+        self.machines = machines;
+        self.met = met;
     }
 
-    /// The automata met, with how often.
-    pub(crate) fn met(&self) -> &BTreeMap<Table, u32> {
-        &self.counts
+    /// The consistent automata met since the last answer, with their shares of the
+    /// posterior, up to a number that all share.
+    pub(crate) fn met(&self) -> &BTreeMap<Table, f64> {
+        &self.met
     }
 }
 
-/// The table of an automaton.
-pub(crate) fn table(dfa: &Dfa) -> Table {
-    let delta = dfa.states().flat_map(|state| {
-        let targets = dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
-        targets.map(|target| target.index() as u32)
-    });
-    let output = dfa.states().map(|state| dfa.is_accepting(state));
-    (delta.collect(), output.collect())
+/// Adds what one ladder found: every ladder has the same say, so that where they
+/// do not agree, nothing is taken for sure.
+fn share(met: &mut BTreeMap<Table, f64>, found: BTreeMap<Table, f64>) {
+    let top = found.values().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = found.values().map(|chance| (chance - top).exp()).sum();
+    for (table, chance) in found {
+        let share = (chance - top).exp() / sum;
+        if share > NEGLIGIBLE {
+            *met.entry(table).or_insert(0.0) += share;
+        }
+    }
+}
+
+/// Lets the ladder that is worst off start from where the best one is.
+fn migrate(machines: &mut [[Machine; LEVELS.len()]]) {
+    let chance = |ladder: &[Machine; LEVELS.len()]| {
+        (ladder.iter().map(Machine::log_chance)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let order =
+        |one: &usize, other: &usize| chance(&machines[*one]).total_cmp(&chance(&machines[*other]));
+    let best = (0..machines.len()).max_by(order);
+    let worst = (0..machines.len()).min_by(order);
+    if let (Some(best), Some(worst)) = (best, worst)
+        && chance(&machines[best]) - chance(&machines[worst]) > HOPELESS
+    {
+        machines[worst] = machines[best].clone();
+    }
+}
+
+fn remember(met: &mut BTreeMap<Table, f64>, machine: &Machine) {
+    let delta = machine.delta.iter().map(|&t| u32::from(t)).collect();
+    let table: Table = (delta, machine.output.clone());
+    if is_minimal(&table) {
+        let chance = machine.log_chance() + numberings(machine.states());
+        met.insert(breadth_first(&table), chance);
+    }
+}
+
+/// The logarithm of the number of ways to number all states but the first.
+fn numberings(states: usize) -> f64 {
+    (1..states).map(|n| (n as f64).ln()).sum()
 }
 
 /// The posterior of single automata.
@@ -242,7 +246,6 @@ impl Posterior {
             return f64::from(u8::MAX) * -(output.len() as f64);
         }
         let delta = delta.iter().map(|&target| target as u8).collect();
-        let numberings: f64 = (1..output.len()).map(|n| (n as f64).ln()).sum();
-        Machine::new(delta, output.clone(), &ground).log_chance() + numberings
+        Machine::new(delta, output.clone(), &ground).log_chance() + numberings(output.len())
     }
 }

@@ -49,6 +49,17 @@ impl<C: ConceptClass> Learner<C> {
             Err(Failure::Contradiction(conflict)) => return (Step::Conflict(conflict), None),
             Err(Failure::OverBudget { .. }) => return self.without_candidates(random.random()),
         };
+        if spread.hurried {
+            // Nothing likely was found: these are consistent and no more. The
+            // way of Algorithm 4 needs nothing else.
+            let (step, simplest) = self.learn_by_elimination();
+            return match step {
+                Step::Ask {
+                    question, round, ..
+                } => (ask(question, round, true), simplest),
+                other => (other, simplest),
+            };
+        }
         let hurried = spread.hurried;
         let posterior = Posterior::new(spread);
         let top = posterior.concepts[0].clone();
