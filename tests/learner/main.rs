@@ -4,6 +4,7 @@
 mod bayes;
 mod brute;
 mod conflicts;
+mod conformance;
 mod finite;
 mod fold;
 mod hurried;

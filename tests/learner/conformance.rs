@@ -1,0 +1,501 @@
+//! Knowing when to stop: the check after the last agreement claims no more than
+//! is true, corrects what is wrong, and is a fold like the rest.
+
+use std::collections::BTreeSet;
+
+use automata::{Dfa, Word};
+use memrep::bench::{process_cpu, teach};
+use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteConcept};
+use memrep::evidence::AnswerId;
+use memrep::identify::{EngineChoice, Settings};
+use memrep::learner::{
+    Config, Conformance, ConformanceError, Learner, Progress, Question, Reply, Step, Strategy,
+};
+use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::finite::config;
+
+fn checked(epsilon: f64, delta: f64, seed: u64) -> Config {
+    Config {
+        conformance: Some(Conformance::new(epsilon, delta).unwrap()),
+        ..config(Strategy::Thesis, seed)
+    }
+}
+
+/// The number is the least with which the risk is small enough.
+#[test]
+fn as_many_are_needed_as_the_formula_says() {
+    for epsilon in [0.5, 0.2, 0.05, 0.01] {
+        for delta in [0.5, 0.05, 0.001] {
+            let conformance = Conformance::new(epsilon, delta).unwrap();
+            let mut risks = 0.0;
+            for round in 1..30u32 {
+                let share = delta / f64::from(round * (round + 1));
+                risks += share;
+                let mut chance = 1.0;
+                let mut needed = 0;
+                while chance > share {
+                    chance *= 1.0 - epsilon;
+                    needed += 1;
+                }
+                assert_eq!(
+                    conformance.needed(round),
+                    needed,
+                    "{epsilon} {delta} {round}"
+                );
+            }
+            assert!(risks < delta, "the checks share the risk");
+        }
+    }
+    assert_eq!(Conformance::new(0.05, 0.05).unwrap().needed(1), 72);
+}
+
+#[test]
+fn what_cannot_be_claimed_is_refused() {
+    for wrong in [0.0, 1.0, -0.1, 1.5, f64::NAN, f64::INFINITY] {
+        let refused = Conformance::new(wrong, 0.1).unwrap_err();
+        assert!(matches!(refused, ConformanceError::Epsilon(_)), "{refused}");
+        let refused = Conformance::new(0.1, wrong).unwrap_err();
+        assert!(matches!(refused, ConformanceError::Delta(_)), "{refused}");
+    }
+    let refused = Conformance::new(1e-12, 0.1).unwrap_err();
+    assert!(matches!(refused, ConformanceError::TooMany { .. }));
+    let text = serde_json::to_string(&Conformance::new(0.1, 0.2).unwrap()).unwrap();
+    let read: Conformance = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, Conformance::new(0.1, 0.2).unwrap());
+    serde_json::from_str::<Conformance>(r#"{"epsilon":0.1,"delta":2}"#).unwrap_err();
+}
+
+/// Twenty atoms, and nothing or the first two of them.
+fn twenty() -> (FiniteClass, FiniteConcept) {
+    let columns = [0, 2].map(|inside| (inside + 1, (0..20).map(|atom| atom < inside).collect()));
+    let class = FiniteClass::new(20, columns).unwrap();
+    let target = class.concepts().nth(1).unwrap();
+    (class, target)
+}
+
+/// Over many seeds, a concept that is wrong about a tenth passes a check for
+/// just less as often as chance has it, at most in a share `δ / 2` of them; the
+/// claims made on the way are false no more often. Where it fails, what is
+/// learned then is right and is checked with the next share.
+#[test]
+fn what_is_wrong_passes_seldom() {
+    let (class, target) = twenty();
+    let (epsilon, delta) = (0.0999, 0.2);
+    let conformance = Conformance::new(epsilon, delta).unwrap();
+    let runs = 2000;
+    let (mut passed, mut claimed) = (0, 0);
+    for seed in 0..runs {
+        let mut learner = Learner::new(class.clone(), checked(epsilon, delta, seed), Vec::new());
+        let mut false_claim = false;
+        let mut number = 0;
+        let learned = loop {
+            let step = learner.next();
+            let progress = learner.conformance().cloned();
+            let claim = progress.as_ref().and_then(Progress::claim);
+            let wrong = learner.hypothesis() != Some(&target);
+            false_claim |= wrong && claim.is_some_and(|claim| claim.share < 0.1);
+            let (question, reply) = match step {
+                Step::Done { hypothesis } => {
+                    let progress = progress.expect("it was checked");
+                    assert!(progress.is_complete());
+                    assert_eq!(progress.round, if hypothesis == target { 2 } else { 1 });
+                    assert_eq!(progress.needed, conformance.needed(progress.round));
+                    break hypothesis;
+                }
+                Step::Conflict(conflict) => panic!("{conflict:?}"),
+                Step::Ask { question, .. } => {
+                    let reply = match &question {
+                        Question::Membership { atom } if class.contains(&target, atom) => {
+                            Reply::Accept
+                        }
+                        Question::Membership { .. } => Reply::Reject,
+                        // The teacher agrees with whatever is shown.
+                        Question::Equivalence { .. } => Reply::Correct,
+                        Question::Comparison { .. } => panic!("one concept of a size"),
+                    };
+                    (question, reply)
+                }
+            };
+            learner
+                .record(AnswerId(number), question, None, reply)
+                .unwrap();
+            number += 1;
+        };
+        passed += u32::from(learned != target);
+        claimed += u32::from(false_claim);
+        assert_eq!(learner.counts().membership, 0);
+        assert_eq!(learner.counts().comparison, 0);
+    }
+    let expected = 0.9f64.powi(conformance.needed(1) as i32);
+    assert!(expected <= delta / 2.0 * 1.01);
+    let runs = runs as f64;
+    let deviation = (runs * expected * (1.0 - expected)).sqrt();
+    let bounds = runs * expected - 4.0 * deviation..runs * expected + 4.0 * deviation;
+    assert!(
+        bounds.contains(&f64::from(passed)),
+        "{passed} passed: {bounds:?}"
+    );
+    assert!(
+        f64::from(claimed) < bounds.end,
+        "{claimed} false claims: {bounds:?}"
+    );
+}
+
+fn automata(target: &Target) -> DfaClass {
+    let settings = Settings {
+        engine: EngineChoice::Auto,
+        max_states: 8,
+    };
+    DfaClass::new(target.dfa().alphabet().clone(), settings)
+}
+
+/// Half of the words are accepted by the hypothesis, and every length of a side
+/// is as likely as another.
+#[test]
+fn words_are_drawn_as_it_is_said() {
+    for name in ["tomita:4", "robot", "modulo:9"] {
+        let target = Target::named(name).unwrap();
+        let class = automata(&target);
+        let dfa = target.dfa();
+        let longest = 10.max(2 * dfa.size());
+        assert!(class.drawn_from(dfa).contains(&format!("up to {longest} ")));
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let words = class.draw(dfa, 4000, &mut random);
+        assert_eq!(words.len(), 4000);
+        for side in [true, false] {
+            let drawn: Vec<&Word> = words.iter().filter(|w| dfa.accepts(w) == side).collect();
+            assert!(drawn.len().abs_diff(2000) < 130, "{name}: {}", drawn.len());
+            let all = if side { dfa.clone() } else { dfa.complement() };
+            let lengths: Vec<usize> = (0..=longest)
+                .filter(|&length| all.count_of_length(length).bits() > 0)
+                .collect();
+            let each = drawn.len() as f64 / lengths.len() as f64;
+            for length in lengths {
+                let count = drawn.iter().filter(|word| word.len() == length).count();
+                assert!(
+                    (count as f64 - each).abs() < 5.0 * each.sqrt(),
+                    "{name}: {length}"
+                );
+            }
+            assert!(drawn.iter().all(|word| word.len() <= longest));
+        }
+    }
+    // Where one side is empty, all come from the other.
+    let target = Target::named("tomita:1").unwrap();
+    let all = Dfa::new(
+        target.dfa().alphabet().clone(),
+        0,
+        vec![true],
+        &[vec![0, 0]],
+    )
+    .unwrap();
+    let words = automata(&target).draw(&all, 50, &mut ChaCha8Rng::seed_from_u64(0));
+    assert_eq!(words.len(), 50);
+}
+
+fn truth(teacher: &mut ScriptedTeacher, question: &Question<Word, Dfa>) -> Reply<Word> {
+    match question {
+        Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
+        Question::Membership { .. } => Reply::Reject,
+        Question::Comparison { first, second } => {
+            Reply::Compared(teacher.comparison(first, second))
+        }
+        Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
+            Some((atom, label)) => Reply::Counterexample { atom, label },
+            None => Reply::Correct,
+        },
+    }
+}
+
+/// A learner that is in the check of Tomita 5, and the next number.
+fn in_check(target: &Target, config: &Config, judged: u32) -> (Learner<DfaClass>, u32) {
+    let mut teacher = ScriptedTeacher::new(target, TeacherSettings::default());
+    let mut learner = Learner::new(automata(target), config.clone(), target.known().to_vec());
+    let mut number = 0;
+    loop {
+        let Step::Ask {
+            question, round, ..
+        } = learner.next()
+        else {
+            panic!("there is something to be judged");
+        };
+        if learner
+            .conformance()
+            .is_some_and(|check| check.judged >= judged)
+        {
+            return (learner, number);
+        }
+        let reply = truth(&mut teacher, &question);
+        learner
+            .record(AnswerId(number), question, round, reply)
+            .unwrap();
+        number += 1;
+    }
+}
+
+/// The next move of a learner that hears the standing answers anew.
+fn replayed(learner: &Learner<DfaClass>, target: &Target) -> (Step<Word, Dfa>, Option<Progress>) {
+    let config = learner.config().clone();
+    let mut fresh = Learner::new(automata(target), config, target.known().to_vec());
+    for entry in learner.entries() {
+        let (question, reply) = (entry.question.clone(), entry.reply.clone());
+        fresh
+            .record(entry.answer, question, entry.round.clone(), reply)
+            .unwrap();
+    }
+    let step = fresh.next();
+    assert_eq!(fresh.counts(), learner.counts());
+    (step, fresh.conformance().cloned())
+}
+
+/// What is asked follows from the answers that stand, nothing known is asked,
+/// and every answer moves the check on; also where answers are taken back in the
+/// middle of it.
+#[test]
+fn a_check_is_a_fold() {
+    let target = Target::named("tomita:5").unwrap();
+    let mut teacher = ScriptedTeacher::new(&target, TeacherSettings::default());
+    let config = checked(0.05, 0.1, 2);
+    let (mut learner, mut number) = in_check(&target, &config, 0);
+    let learned = learner.counts();
+    let mut retracted = 0;
+    loop {
+        let step = learner.next();
+        let progress = learner.conformance().cloned();
+        assert_eq!(
+            (step.clone(), progress.clone()),
+            replayed(&learner, &target)
+        );
+        let progress = progress.expect("it is in the check");
+        let Step::Ask { question, .. } = step else {
+            break;
+        };
+        let Question::Membership { atom } = &question else {
+            panic!("{question:?} is no part of a check");
+        };
+        let asked = |entry: &memrep::learner::Entry<Word, Dfa>| entry.question == question;
+        assert!(!learner.entries().iter().any(asked), "{atom:?} again");
+        let reply = truth(&mut teacher, &question);
+        learner
+            .record(AnswerId(number), question, None, reply)
+            .unwrap();
+        number += 1;
+        learner.next();
+        let further = learner.conformance().expect("it agrees");
+        assert!(further.judged > progress.judged);
+        if number % 7 == 0 && retracted < 6 {
+            // Once of the check, once of what was answered before.
+            let entries = learner.entries();
+            let place = if retracted % 2 == 0 {
+                entries.len() - 3
+            } else {
+                1
+            };
+            let answer = entries[place].answer;
+            assert!(learner.retract(answer));
+            retracted += 1;
+        }
+    }
+    assert_eq!(retracted, 6);
+    let progress = learner.conformance().expect("it was checked");
+    assert!(progress.is_complete());
+    let counts = learner.counts();
+    assert!(
+        counts.conformance > 20 && counts.conformance <= progress.needed,
+        "{counts:?}"
+    );
+    assert!(counts.membership <= learned.membership);
+    assert_eq!(counts.equivalence, learned.equivalence);
+}
+
+/// Taking the agreement back ends the check; agreeing once more opens another
+/// with words of its own, so that none is judged before it is drawn.
+#[test]
+fn another_agreement_draws_other_words() {
+    let target = Target::named("tomita:5").unwrap();
+    let (mut learner, number) = in_check(&target, &checked(0.05, 0.1, 2), 40);
+    let judged: BTreeSet<Word> = learner.entries().iter().filter_map(judged_atom).collect();
+    let agreement = learner.entries().iter().find(|e| e.reply == Reply::Correct);
+    let agreement = agreement.expect("it was agreed on").answer;
+    assert!(learner.retract(agreement));
+    let Step::Ask { question, .. } = learner.next() else {
+        panic!("agreement is asked for");
+    };
+    assert!(learner.conformance().is_none());
+    assert!(matches!(question, Question::Equivalence { .. }));
+    learner
+        .record(AnswerId(number), question, None, Reply::Correct)
+        .unwrap();
+    let Step::Ask {
+        question: Question::Membership { atom },
+        ..
+    } = learner.next()
+    else {
+        panic!("the check is opened");
+    };
+    assert!(!judged.contains(&atom));
+    let progress = learner.conformance().unwrap();
+    assert!(progress.judged < 20, "most words are new: {progress:?}");
+}
+
+fn judged_atom(entry: &memrep::learner::Entry<Word, Dfa>) -> Option<Word> {
+    match &entry.question {
+        Question::Membership { atom } => Some(atom.clone()),
+        _ => None,
+    }
+}
+
+/// A wrong judgement in the check refutes what was right; once it is taken back
+/// the check goes on where it was.
+#[test]
+fn a_slip_is_mended() {
+    let target = Target::named("tomita:5").unwrap();
+    let mut teacher = ScriptedTeacher::new(&target, TeacherSettings::default());
+    let (mut learner, number) = in_check(&target, &checked(0.05, 0.1, 2), 12);
+    let before = (learner.next(), learner.conformance().cloned());
+    let Step::Ask { question, .. } = before.0.clone() else {
+        panic!("there is something to be judged");
+    };
+    let wrong = match truth(&mut teacher, &question) {
+        Reply::Accept => Reply::Reject,
+        _ => Reply::Accept,
+    };
+    learner
+        .record(AnswerId(number), question, None, wrong)
+        .unwrap();
+    assert!(!matches!(learner.next(), Step::Done { .. }));
+    assert!(learner.conformance().is_none());
+    assert!(learner.retract(AnswerId(number)));
+    assert_eq!((learner.next(), learner.conformance().cloned()), before);
+}
+
+/// Whoever skips is told what the claim is about; whoever skips everything is
+/// let go without one.
+#[test]
+fn skipped_words_are_passed_over() {
+    let (class, target) = twenty();
+    for every in [3, 1] {
+        let mut learner = Learner::new(class.clone(), checked(0.2, 0.2, 1), Vec::new());
+        let mut skipped = BTreeSet::new();
+        for number in 0..60 {
+            let (question, reply) = match learner.next() {
+                Step::Done { .. } => break,
+                Step::Conflict(conflict) => panic!("{conflict:?}"),
+                Step::Ask { question, .. } => {
+                    let reply = match &question {
+                        Question::Membership { atom } if atom.0 % every == 0 => {
+                            assert!(skipped.insert(*atom), "skipped once is enough");
+                            Reply::Skip
+                        }
+                        Question::Membership { atom } if class.contains(&target, atom) => {
+                            Reply::Accept
+                        }
+                        Question::Membership { .. } => Reply::Reject,
+                        _ => Reply::Correct,
+                    };
+                    (question, reply)
+                }
+            };
+            learner
+                .record(AnswerId(number), question, None, reply)
+                .unwrap();
+        }
+        assert!(matches!(learner.next(), Step::Done { .. }));
+        let progress = learner.conformance().expect("it was checked");
+        assert!(progress.skipped > 0);
+        assert_eq!(progress.is_complete(), every == 3);
+        match progress.claim() {
+            Some(claim) => {
+                let text = claim.to_string();
+                let skips = format!("{} were skipped", progress.skipped);
+                assert!(text.contains(&skips), "{text}");
+            }
+            None => assert_eq!((every, progress.judged), (1, 0)),
+        }
+    }
+}
+
+/// The sentence says the share, the confidence, and what both are relative to,
+/// and claims less rather than more.
+#[test]
+fn the_claim_is_one_sentence() {
+    let claim = |epsilon, delta, judged, skipped| {
+        let conformance = Conformance::new(epsilon, delta).unwrap();
+        let progress = Progress {
+            conformance,
+            round: 1,
+            needed: conformance.needed(1),
+            judged,
+            skipped,
+            atoms: "words".to_owned(),
+        };
+        (
+            progress.batch(),
+            progress
+                .claim()
+                .map(|claim| (claim.share, claim.to_string())),
+        )
+    };
+    assert_eq!(claim(0.05, 0.05, 9, 0), ((1, 8), None));
+    let (batch, said) = claim(0.05, 0.05, 47, 0);
+    let (share, text) = said.unwrap();
+    assert_eq!(batch, (5, 8));
+    assert!((1.0 - share).powi(40) <= 0.025 + 1e-12);
+    assert_eq!(
+        text,
+        "wrong about at most 8.9 % of random behaviours, with 95 % confidence, if no answer is wrong: \
+         it was right about all 40 that were drawn (words)"
+    );
+    let (_, said) = claim(0.05, 0.001, 149, 1);
+    let (share, text) = said.unwrap();
+    assert!(share <= 0.05);
+    assert!(text.contains("at most 5 % of"), "{text}");
+    assert!(text.contains("99.9 % confidence"), "{text}");
+    assert!(text.ends_with("1 was skipped"), "{text}");
+}
+
+/// Also a teacher who errs ends with the target and its claim, and one slip in
+/// the check alone overturns nothing.
+#[test]
+fn a_teacher_who_errs_passes_too() {
+    for name in ["tomita:4", "tomita:6"] {
+        let target = Target::named(name).unwrap();
+        for seed in 0..4 {
+            let settings = TeacherSettings {
+                error_rate: 0.05,
+                seed,
+                ..TeacherSettings::default()
+            };
+            let config = checked(0.1, 0.1, seed);
+            let mut learner = Learner::new(automata(&target), config, target.known().to_vec());
+            let mut teacher = ScriptedTeacher::new(&target, settings);
+            let mut asked = 0;
+            let report = teach(&mut learner, &mut teacher, 2000, process_cpu, |question| {
+                asked += u32::from(question.check.is_some());
+            })
+            .unwrap();
+            let learned = report.learned.expect("the questions are ample");
+            assert!(learned.is_equivalent(target.dfa()).unwrap());
+            let check = report.check.expect("it was checked");
+            assert!(check.is_complete());
+            assert_eq!(report.counts.conformance, asked);
+        }
+    }
+}
+
+/// Without one asked for there is none, as it always was.
+#[test]
+fn no_claim_no_check() {
+    let target = Target::named("tomita:1").unwrap();
+    let mut text = serde_json::to_value(config(Strategy::Thesis, 0)).unwrap();
+    text.as_object_mut().unwrap().remove("conformance");
+    let config: Config = serde_json::from_value(text).unwrap();
+    let mut learner = Learner::new(automata(&target), config, target.known().to_vec());
+    let mut teacher = ScriptedTeacher::new(&target, TeacherSettings::default());
+    let report = teach(&mut learner, &mut teacher, 100, process_cpu, |_| ()).unwrap();
+    assert!(report.learned.is_some());
+    assert_eq!((report.check, report.counts.conformance), (None, 0));
+}
