@@ -330,10 +330,7 @@ fn bad_input_is_told() {
             "allow a larger share of errors",
         ),
         ("learn --target robot --max-states 0", "--max-states"),
-        (
-            "learn --target robot --strategy best",
-            "possible values: thesis, membership",
-        ),
+        ("learn --target robot --strategy best", "thesis, membership"),
         (
             "learn --target robot --save no/such/folder.json",
             "no/such/folder.json: cannot write it",

@@ -8,6 +8,7 @@ mod conformance;
 mod finite;
 mod fold;
 mod hurried;
+mod implied;
 mod order;
 mod refusals;
 mod tomita;
