@@ -270,6 +270,40 @@ fn a_claim_is_checked() {
     );
 }
 
+/// What contradicts is named with its numbers and its cause as soon as it does.
+#[test]
+fn a_contradiction_is_traced() {
+    let folder = folder();
+    let arguments = "learn --target tomita:6 --error-rate 0.15 --max-states 4 --seed 2 --trace";
+    let outcome = memrep(&folder, &format!("{arguments} --format json"));
+    let lines: Vec<Value> = (outcome.stdout.lines())
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let (summary, lines) = lines.split_last().unwrap();
+    let mut asked = 0;
+    let mut dropped = 0;
+    for line in lines {
+        if line["question"].is_u64() {
+            asked += 1;
+            assert_eq!(line["question"], asked);
+            continue;
+        }
+        let numbers = |key: &str| -> Vec<u64> {
+            let numbers = line[key].as_array().unwrap();
+            numbers.iter().map(|n| n.as_u64().unwrap()).collect()
+        };
+        let (conflict, gone) = (numbers("conflict"), numbers("dropped"));
+        assert!(gone.iter().all(|answer| conflict.contains(answer)));
+        let cause = line["cause"].as_str().unwrap();
+        assert!(["order", "equality", "membership", "states"].contains(&cause));
+        dropped += gone.len();
+    }
+    assert!(dropped > 0, "nobody erred");
+    assert_eq!(summary["dropped"], dropped);
+    let people = memrep(&folder, arguments).stdout;
+    assert!(people.contains(" cannot all be true. "), "{people}");
+}
+
 #[test]
 fn bad_input_is_told() {
     let folder = folder();

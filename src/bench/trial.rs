@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::concept::ConceptClass;
+use crate::concept::{ConceptClass, Contradiction};
 use crate::evidence::AnswerId;
 use crate::learner::{Counts, Learner, Progress, Question, Reply, ReplyError, Step};
 use crate::oracle::Teacher;
@@ -18,6 +18,17 @@ pub struct Asked<'a, A, C> {
     pub reply: &'a Reply<A>,
     /// How far the check has come before this question, if it belongs to one.
     pub check: Option<&'a Progress>,
+    /// The contradictions met since the question before.
+    pub conflicts: &'a [Dropped],
+}
+
+/// Answers that contradicted each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dropped {
+    /// Which, and why.
+    pub contradiction: Contradiction,
+    /// Those of them that were dropped.
+    pub answers: Vec<AnswerId>,
 }
 
 /// What came of a run.
@@ -35,6 +46,8 @@ pub struct Report<C> {
     /// The number of answers that were dropped because they could not stand
     /// with others.
     pub dropped: u32,
+    /// The contradictions met after the last question.
+    pub conflicts: Vec<Dropped>,
     /// The number of questions for which the budget ended.
     pub hurried: u32,
     /// The CPU time that choosing each question took, in the order asked; what
@@ -87,6 +100,7 @@ where
         counts: Counts::default(),
         cost: 0.0,
         dropped: 0,
+        conflicts: Vec::new(),
         hurried: 0,
         question_times: Vec::new(),
         cpu: Duration::ZERO,
@@ -104,10 +118,14 @@ where
                 if conflict.answers.is_empty() {
                     return Err(TrialError::Contradiction);
                 }
-                let dropped = doubted(learner, conflict.answers);
-                for answer in dropped {
+                let answers = doubted(learner, conflict.answers.clone());
+                for &answer in &answers {
                     report.dropped += u32::from(learner.retract(answer));
                 }
+                report.conflicts.push(Dropped {
+                    contradiction: conflict,
+                    answers,
+                });
             }
             Step::Ask {
                 question,
@@ -132,6 +150,7 @@ where
                         question: &question,
                         reply: &reply,
                         check,
+                        conflicts: &std::mem::take(&mut report.conflicts),
                     });
                     (reply, number < max_questions)
                 };

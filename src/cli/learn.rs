@@ -233,6 +233,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     progress.finish_and_clear();
     printed?;
     let report = report?;
+    if args.trace {
+        let mut conflicts = report.conflicts.iter();
+        conflicts.try_for_each(|dropped| trace::conflict(args.format, dropped))?;
+    }
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, &target, args.seed, learned)?;
     }

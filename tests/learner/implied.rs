@@ -16,7 +16,7 @@ use crate::finite::config;
 
 /// Whether any preorder and any set of atoms agree with the facts: the least
 /// preorder does if one does. Knows nothing of how the learner finds out.
-fn is_possible<A: PartialEq>(facts: &[Fact<A>]) -> bool {
+pub(crate) fn is_possible<A: PartialEq>(facts: &[Fact<A>]) -> bool {
     let mut atoms: Vec<&A> = Vec::new();
     let mut number = |atom| {
         atoms

@@ -1,11 +1,12 @@
-//! `--trace`: every question with its answer, a line each.
+//! `--trace`: every question with its answer, and answers that contradict each
+//! other, a line each.
 
 use automata::{Alphabet, Dfa, Word};
 use serde::Serialize;
 
-use crate::bench::Asked;
+use crate::bench::{Asked, Dropped};
 use crate::cli::output::{self, Output};
-use crate::evidence::Comparison;
+use crate::evidence::{AnswerId, Comparison};
 use crate::learner::{Question, Reply};
 
 /// One line of the trace for programs.
@@ -31,12 +32,51 @@ struct Line<'a> {
     check: Option<u32>,
 }
 
+/// One line about answers that contradict each other.
+#[derive(Serialize)]
+struct ConflictLine<'a> {
+    /// By the numbers of their questions.
+    conflict: &'a [AnswerId],
+    cause: &'static str,
+    minimal: bool,
+    dropped: &'a [AnswerId],
+}
+
+/// Prints answers that contradict each other.
+pub(super) fn conflict(format: Output, conflict: &Dropped) -> anyhow::Result<()> {
+    let Dropped {
+        contradiction,
+        answers,
+    } = conflict;
+    if format == Output::Json {
+        return output::line(serde_json::to_string(&ConflictLine {
+            conflict: &contradiction.answers,
+            cause: output::cause(contradiction.cause),
+            minimal: contradiction.minimal,
+            dropped: answers,
+        })?);
+    }
+    let numbers = |answers: &[AnswerId]| {
+        let numbers: Vec<String> = answers.iter().map(|answer| answer.0.to_string()).collect();
+        numbers.join(", ")
+    };
+    output::line(format!(
+        "   answers {} cannot all be true. {} Dropped: {}",
+        numbers(&contradiction.answers),
+        output::because(contradiction.cause),
+        numbers(answers)
+    ))
+}
+
 /// Prints one question with its answer.
 pub(super) fn line(
     format: Output,
     alphabet: &Alphabet,
     asked: &Asked<'_, Word, Dfa>,
 ) -> anyhow::Result<()> {
+    for dropped in asked.conflicts {
+        conflict(format, dropped)?;
+    }
     let number = asked.number;
     let answer = answer(asked.reply);
     if format == Output::Text {
