@@ -125,9 +125,11 @@ impl Conformance {
 
     /// How many draws the concept must be right about in the check of this
     /// number, from 1.
+    #[expect(
+        clippy::cast_sign_loss,
+        reason = "at least 1; and far below 2³², as the first is small and later ones grow by a logarithm"
+    )]
     pub fn needed(&self, round: u32) -> u32 {
-        // Small enough: the first is, and a later one is at most a few hundred
-        // times `ln 2³²` larger.
         self.draws(round) as u32
     }
 
@@ -338,15 +340,13 @@ impl<C: ConceptClass> Learner<C> {
         self.entries.iter().map(move |entry| {
             let membership = matches!(entry.question, Question::Membership { .. });
             let checks = self.config.conformance.is_some() && membership && agreed.is_some();
-            match (&entry.question, &entry.reply) {
-                (Question::Equivalence { hypothesis }, Reply::Correct) => agreed = Some(hypothesis),
-                _ => {
-                    let holds = |concept: &&C::Concept| {
-                        let fact = entry.fact();
-                        fact.is_none_or(|f| f.holds(|atom| self.class.contains(concept, atom)))
-                    };
-                    agreed = agreed.filter(holds);
-                }
+            if let (Question::Equivalence { hypothesis }, Reply::Correct) =
+                (&entry.question, &entry.reply)
+            {
+                agreed = Some(hypothesis);
+            } else if let Some(fact) = entry.fact() {
+                agreed =
+                    agreed.filter(|concept| fact.holds(|atom| self.class.contains(concept, atom)));
             }
             (entry, checks)
         })

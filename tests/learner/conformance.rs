@@ -129,7 +129,7 @@ fn what_is_wrong_passes_seldom() {
         assert_eq!(learner.counts().membership, 0);
         assert_eq!(learner.counts().comparison, 0);
     }
-    let expected = 0.9f64.powi(conformance.needed(1) as i32);
+    let expected = 0.9f64.powf(f64::from(conformance.needed(1)));
     assert!(expected <= delta / 2.0 * 1.01);
     let runs = runs as f64;
     let deviation = (runs * expected * (1.0 - expected)).sqrt();

@@ -7,7 +7,7 @@ use automata::{Alphabet, Dfa, Word};
 use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteConcept};
 use memrep::evidence::{AnswerId, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
-use memrep::learner::{Config, Conformance, Learner, Question, Reply, Step, Strategy};
+use memrep::learner::{Config, Conformance, Entry, Learner, Question, Reply, Step, Strategy};
 use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -140,8 +140,8 @@ fn check<C: ConceptClass>(
 /// checked. Returns how many were asked.
 fn session<C: ConceptClass>(
     class: C,
-    config: Config,
-    given: Vec<Fact<C::Atom>>,
+    config: &Config,
+    given: &[Fact<C::Atom>],
     mut answer: impl FnMut(&Question<C::Atom, C::Concept>) -> Reply<C::Atom>,
     is_target: impl Fn(&C::Concept) -> bool,
     random: &mut ChaCha8Rng,
@@ -149,7 +149,7 @@ fn session<C: ConceptClass>(
 where
     C::Atom: Debug,
 {
-    let mut learner = Learner::new(class, config.clone(), given.clone());
+    let mut learner = Learner::new(class, config.clone(), given.to_vec());
     let mut withdrawn = 0;
     for number in 0..400 {
         let (question, round) = match learner.next() {
@@ -162,8 +162,8 @@ where
             }
             Step::Conflict(conflict) => panic!("{conflict:?} of {:?}", learner.entries()),
         };
-        let mut facts = given.clone();
-        facts.extend(learner.entries().iter().filter_map(|entry| entry.fact()));
+        let mut facts = given.to_vec();
+        facts.extend(learner.entries().iter().filter_map(Entry::fact));
         check(&learner, &facts, &question);
         let shown = matches!(question, Question::Equivalence { .. });
         let reply = if !shown && random.random_ratio(1, 12) {
@@ -227,7 +227,7 @@ fn over_automata(strategy: Strategy, sessions: u64, states: usize) {
             max_states: 12,
         };
         let class = DfaClass::new(target.dfa().alphabet().clone(), bound);
-        // At times something is known: a label, and that two words are alike.
+        // At times a label is known.
         let empty = Word::empty();
         let given = match random.random_range(0..3) {
             0 => vec![Fact::Label {
@@ -249,7 +249,7 @@ fn over_automata(strategy: Strategy, sessions: u64, states: usize) {
             },
         };
         let is_target = |learned: &Dfa| learned.is_equivalent(target.dfa()) == Ok(true);
-        asked += session(class, config, given, answer, is_target, &mut random);
+        asked += session(class, &config, &given, answer, is_target, &mut random);
     }
     assert!(u64::from(asked) > 5 * sessions, "only {asked} questions");
 }
@@ -319,14 +319,7 @@ fn over_tables(strategy: Strategy, sessions: u64) {
             }
         };
         let is_target = |learned: &FiniteConcept| *learned == target;
-        asked += session(
-            class.clone(),
-            config,
-            Vec::new(),
-            answer,
-            is_target,
-            &mut random,
-        );
+        asked += session(class.clone(), &config, &[], answer, is_target, &mut random);
     }
     assert!(u64::from(asked) > 3 * sessions, "only {asked} questions");
 }
