@@ -3,6 +3,7 @@
 
 mod bayes;
 mod brute;
+mod claims;
 mod conflicts;
 mod conformance;
 mod finite;
