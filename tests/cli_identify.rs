@@ -114,7 +114,7 @@ fn a_contradiction_is_told_by_its_lines() {
     let outcome = identify(&["-", "--from", "jsonl"], &contradictory);
     assert_eq!(outcome.status, Some(1), "{outcome:?}");
     insta::assert_snapshot!(outcome.stdout, @r#"
-    No automaton of any size: these lines contradict each other.
+    No automaton of any size: these lines contradict each other. They accept a word that is no better than one that they reject.
       line 1: {"word":[],"label":true}
       line 5: {"equal":[["b"],[]]}
       line 6: {"worse":["b"],"better":["a","b","a"]}
@@ -126,7 +126,36 @@ fn a_contradiction_is_told_by_its_lines() {
         &contradictory,
     );
     assert_eq!(outcome.status, Some(1), "{outcome:?}");
-    insta::assert_snapshot!(outcome.stdout, @r#"{"contradiction":{"lines":[1,5,6,9],"minimal":true}}"#);
+    insta::assert_snapshot!(outcome.stdout, @r#"{"contradiction":{"lines":[1,5,6,9],"minimal":true,"cause":"membership"}}"#);
+}
+
+/// No order agrees, and yet an automaton does: both are told.
+#[test]
+fn a_circle_of_preferences_is_told_beside_the_automaton() {
+    let circle = |last: &str| {
+        let lines = [
+            r#"{"word":["a"],"label":true}"#,
+            r#"{"worse":["a"],"better":["b"]}"#,
+            r#"{"worse":["b"],"better":["a","b"]}"#,
+            last,
+        ];
+        identify(&["-", "--from", "jsonl"], &lines.join("\n"))
+    };
+    let outcome = circle(r#"{"worse":["a","b"],"better":["a"]}"#);
+    assert_eq!(outcome.status, Some(0), "{outcome:?}");
+    insta::assert_snapshot!(outcome.stderr, @r#"
+    warning: no order agrees with these lines. Followed round, they say that something is better than itself. What is found treats them all alike.
+      line 2: {"worse":["a"],"better":["b"]}
+      line 3: {"worse":["b"],"better":["a","b"]}
+      line 4: {"worse":["a","b"],"better":["a"]}
+    "#);
+    let outcome = circle(r#"{"equal":[["a"],["b"]]}"#);
+    assert_eq!(outcome.status, Some(0), "{outcome:?}");
+    insta::assert_snapshot!(outcome.stderr, @r#"
+    warning: no order agrees with these lines. They say of the same two words that they are equally good, and that one is better. What is found treats them all alike.
+      line 2: {"worse":["a"],"better":["b"]}
+      line 4: {"equal":[["a"],["b"]]}
+    "#);
 }
 
 #[test]
@@ -150,7 +179,7 @@ fn a_bound_that_is_too_small_is_told_with_its_lines() {
         "json",
     ];
     let outcome = identify(&arguments, sample);
-    insta::assert_snapshot!(outcome.stdout, @r#"{"contradiction":{"lines":[4,7],"minimal":true,"max_states":2}}"#);
+    insta::assert_snapshot!(outcome.stdout, @r#"{"contradiction":{"lines":[4,7],"minimal":true,"max_states":2,"cause":"states"}}"#);
     let outcome = identify(&["-", "--from", "abb", "--max-states", "3"], sample);
     assert_eq!(outcome.status, Some(0), "{outcome:?}");
 }

@@ -218,6 +218,92 @@ fn an_erring_teacher() {
     assert!(dropped > 0);
 }
 
+/// The check is asked for, told to people and to programs, and counted apart.
+#[test]
+fn a_claim_is_checked() {
+    let folder = folder();
+    let arguments = "learn --target tomita:4 --conformance 0.1,0.05 --trace";
+    let outcome = memrep(&folder, &format!("{arguments} --format json"));
+    assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+    let summary = summary(&outcome);
+    let check = &summary["conformance"];
+    assert_eq!(
+        (&check["needed"], &check["judged"]),
+        (&36.into(), &36.into())
+    );
+    assert_eq!(check["complete"], true);
+    assert!(check["share"].as_f64() <= Some(0.1));
+    let lines: Vec<Value> = (outcome.stdout.lines())
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let checks = lines.iter().filter(|line| line["check"] == 1);
+    assert_eq!(check["asked"], checks.clone().count());
+    assert!(checks.clone().all(|line| line["kind"] == "membership"));
+    let plain = memrep(&folder, "learn --target tomita:4 --format json");
+    let plain: Value = serde_json::from_str(&plain.stdout).unwrap();
+    assert_eq!(plain.get("conformance"), None);
+    for key in ["membership", "comparison", "equivalence", "cost"] {
+        assert_eq!(plain[key], summary[key], "{key}");
+    }
+    let people = memrep(&folder, arguments);
+    let claim = check["claim"].as_str().unwrap();
+    assert!(
+        people.stdout.contains(&format!("checked: {claim}")),
+        "{}",
+        people.stdout
+    );
+    assert!(
+        people
+            .stdout
+            .contains(" of 36 random words judged: wrong about at most ")
+    );
+
+    let cut = memrep(
+        &folder,
+        "learn --target tomita:4 --conformance 0.1,0.05 --max-questions 40",
+    );
+    assert_eq!(cut.status, Some(1), "{}", cut.stdout);
+    assert!(
+        cut.stdout.contains("allow more by `--max-questions`"),
+        "{}",
+        cut.stdout
+    );
+}
+
+/// What contradicts is named with its numbers and its cause as soon as it does.
+#[test]
+fn a_contradiction_is_traced() {
+    let folder = folder();
+    let arguments = "learn --target tomita:6 --error-rate 0.15 --max-states 4 --seed 2 --trace";
+    let outcome = memrep(&folder, &format!("{arguments} --format json"));
+    let lines: Vec<Value> = (outcome.stdout.lines())
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let (summary, lines) = lines.split_last().unwrap();
+    let mut asked = 0;
+    let mut dropped = 0;
+    for line in lines {
+        if line["question"].is_u64() {
+            asked += 1;
+            assert_eq!(line["question"], asked);
+            continue;
+        }
+        let numbers = |key: &str| -> Vec<u64> {
+            let numbers = line[key].as_array().unwrap();
+            numbers.iter().map(|n| n.as_u64().unwrap()).collect()
+        };
+        let (conflict, gone) = (numbers("conflict"), numbers("dropped"));
+        assert!(gone.iter().all(|answer| conflict.contains(answer)));
+        let cause = line["cause"].as_str().unwrap();
+        assert!(["order", "equality", "membership", "states"].contains(&cause));
+        dropped += gone.len();
+    }
+    assert!(dropped > 0, "nobody erred");
+    assert_eq!(summary["dropped"], dropped);
+    let people = memrep(&folder, arguments).stdout;
+    assert!(people.contains(" cannot all be true. "), "{people}");
+}
+
 #[test]
 fn bad_input_is_told() {
     let folder = folder();
@@ -261,11 +347,24 @@ fn bad_input_is_told() {
             "learn --target robot --error-rate 2",
             "give a number from 0 to 1",
         ),
-        ("learn --target robot --max-states 0", "--max-states"),
         (
-            "learn --target robot --strategy best",
-            "possible values: thesis, membership",
+            "learn --target robot --conformance 0.05",
+            "give two numbers between 0 and 1",
         ),
+        (
+            "learn --target robot --conformance 5,0.05",
+            "the share of errors must be between 0 and 1",
+        ),
+        (
+            "learn --target robot --conformance 0.05,-1",
+            "the risk must be between 0 and 1",
+        ),
+        (
+            "learn --target robot --conformance 1e-9,0.05",
+            "allow a larger share of errors",
+        ),
+        ("learn --target robot --max-states 0", "--max-states"),
+        ("learn --target robot --strategy best", "thesis, membership"),
         (
             "learn --target robot --save no/such/folder.json",
             "no/such/folder.json: cannot write it",

@@ -9,4 +9,4 @@ pub mod thesis_page;
 mod trial;
 
 pub use clock::process_cpu;
-pub use trial::{Asked, Report, TrialError, percentile, teach};
+pub use trial::{Asked, Dropped, Report, TrialError, percentile, teach};

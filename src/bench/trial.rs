@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::concept::ConceptClass;
+use crate::concept::{ConceptClass, Contradiction};
 use crate::evidence::AnswerId;
-use crate::learner::{Counts, Learner, Question, Reply, ReplyError, Step};
+use crate::learner::{Counts, Learner, Progress, Question, Reply, ReplyError, Step};
 use crate::oracle::Teacher;
 
 /// A question with the reply it got, as soon as it is there.
@@ -16,20 +16,38 @@ pub struct Asked<'a, A, C> {
     pub question: &'a Question<A, C>,
     /// What the teacher replied.
     pub reply: &'a Reply<A>,
+    /// How far the check has come before this question, if it belongs to one.
+    pub check: Option<&'a Progress>,
+    /// The contradictions met since the question before.
+    pub conflicts: &'a [Dropped],
+}
+
+/// Answers that contradicted each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dropped {
+    /// Which, and why.
+    pub contradiction: Contradiction,
+    /// Those of them that were dropped.
+    pub answers: Vec<AnswerId>,
 }
 
 /// What came of a run.
 #[derive(Clone, Debug)]
 pub struct Report<C> {
-    /// The concept the teacher agreed with; none if the questions ran out.
+    /// The concept the teacher agreed with; none if the questions ran out before.
     pub learned: Option<C>,
+    /// How far its check has come, where one was asked for.
+    pub check: Option<Progress>,
     /// All questions asked, also those whose answers were dropped later.
     pub counts: Counts,
-    /// The cost of membership queries and comparisons (Eq. 5.2).
+    /// The cost of membership queries and comparisons (Eq. 5.2); a check costs
+    /// nothing here.
     pub cost: f64,
     /// The number of answers that were dropped because they could not stand
     /// with others.
     pub dropped: u32,
+    /// The contradictions met after the last question.
+    pub conflicts: Vec<Dropped>,
     /// The number of questions for which the budget ended.
     pub hurried: u32,
     /// The CPU time that choosing each question took, in the order asked; what
@@ -52,12 +70,14 @@ pub enum TrialError {
     Reply(#[from] ReplyError),
 }
 
-/// Runs `learner` against `teacher` until they agree or `max_questions` have
-/// been asked. `clock` tells CPU time, and `observe` hears of every question.
+/// Runs `learner` against `teacher` until they agree, and the check after it (if
+/// one is asked for) is passed, or `max_questions` have been asked. `clock` tells CPU time, and `observe` hears of every question.
 ///
 /// Answers that contradict each other are treated as section 5.2 of the
 /// dissertation has it: the minimal set is dropped, and learning goes on.
-/// Counterexamples in it stay, unless there is nothing else to drop.
+/// Counterexamples in it stay, unless there is nothing else to drop. In a check
+/// a judgement against the concept is put once more, and a third time if the two
+/// differ, before it is believed.
 ///
 /// # Errors
 ///
@@ -76,9 +96,11 @@ where
     let start = clock();
     let mut report = Report {
         learned: None,
+        check: None,
         counts: Counts::default(),
         cost: 0.0,
         dropped: 0,
+        conflicts: Vec::new(),
         hurried: 0,
         question_times: Vec::new(),
         cpu: Duration::ZERO,
@@ -89,39 +111,64 @@ where
         match learner.next() {
             Step::Done { hypothesis } => {
                 report.learned = Some(hypothesis);
+                report.check = learner.conformance().cloned();
                 break;
             }
             Step::Conflict(conflict) => {
                 if conflict.answers.is_empty() {
                     return Err(TrialError::Contradiction);
                 }
-                let dropped = doubted(learner, conflict.answers);
-                for answer in dropped {
+                let answers = doubted(learner, conflict.answers.clone());
+                for &answer in &answers {
                     report.dropped += u32::from(learner.retract(answer));
                 }
+                report.conflicts.push(Dropped {
+                    contradiction: conflict,
+                    answers,
+                });
             }
             Step::Ask {
                 question,
                 round,
                 hurried,
             } => {
+                let check = learner.conformance();
                 if number == max_questions {
+                    // In a check, it is the check that ends too early.
+                    report.check = check.cloned();
+                    report.learned = check.and(learner.hypothesis()).cloned();
                     break;
                 }
-                number += 1;
                 report.question_times.push(clock().saturating_sub(since));
                 report.hurried += u32::from(hurried);
-                let reply = ask(teacher, &question);
-                match question {
-                    Question::Membership { .. } => report.counts.membership += 1,
-                    Question::Comparison { .. } => report.counts.comparison += 1,
-                    Question::Equivalence { .. } => report.counts.equivalence += 1,
+                let mut put = || {
+                    number += 1;
+                    let reply = ask(teacher, &question);
+                    report.counts.add(&question, check.is_some());
+                    observe(&Asked {
+                        number,
+                        question: &question,
+                        reply: &reply,
+                        check,
+                        conflicts: &std::mem::take(&mut report.conflicts),
+                    });
+                    (reply, number < max_questions)
+                };
+                let (mut reply, mut more) = put();
+                if check.is_some() && refutes(learner, &question, &reply) {
+                    // One slip must not overturn what the teacher agreed with:
+                    // two judgements of at most three do.
+                    for _ in 0..2 {
+                        if !more {
+                            break;
+                        }
+                        let first = reply;
+                        (reply, more) = put();
+                        if reply == first {
+                            break;
+                        }
+                    }
                 }
-                observe(&Asked {
-                    number,
-                    question: &question,
-                    reply: &reply,
-                });
                 learner.record(AnswerId(number), question, round, reply)?;
                 since = clock();
             }
@@ -148,6 +195,22 @@ fn doubted<C: ConceptClass>(learner: &Learner<C>, answers: Vec<AnswerId>) -> Vec
     } else {
         doubted
     }
+}
+
+/// Whether this judgement is none that the hypothesis gives.
+fn refutes<C: ConceptClass>(
+    learner: &Learner<C>,
+    question: &Question<C::Atom, C::Concept>,
+    reply: &Reply<C::Atom>,
+) -> bool {
+    let (Question::Membership { atom }, Some(hypothesis)) = (question, learner.hypothesis()) else {
+        return false;
+    };
+    let contained = learner.class().contains(hypothesis, atom);
+    matches!(
+        (reply, contained),
+        (Reply::Accept, false) | (Reply::Reject, true)
+    )
 }
 
 /// Eq. 5.2. No comparisons cost nothing, also where one would be infinite.

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use super::files::{self, Format, ItemLine};
 use super::output::{self, Output};
+use crate::concept::Preorder;
 use crate::evidence::{AnswerId, Budget, Fact};
 use crate::identify::{Cause, Contradiction, EngineChoice, Failure, Identifier, Sample, Settings};
 
@@ -104,6 +105,8 @@ enum Nothing {
         /// The bound, if a larger one would do.
         #[serde(skip_serializing_if = "Option::is_none")]
         max_states: Option<usize>,
+        /// `membership` or `states`.
+        cause: &'static str,
     },
     /// The budget ended.
     OverBudget { at_least: usize },
@@ -122,6 +125,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             identifier.add(Some(AnswerId(u32::try_from(place)?)), fact);
         }
     }
+    warn_of_order(&sample, &lines)?;
     let mut budget = Budget::new(args.budget);
     let progress = progress();
     let found = identifier.smallest_watched(args.count, args.seed, &mut budget, &mut |states| {
@@ -138,6 +142,31 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             Ok(ExitCode::from(1))
         }
     }
+}
+
+/// Tells on the standard error of comparisons that no order agrees with. They do
+/// not keep an automaton from being consistent (Definition 5.1.2 looks at labels
+/// alone), but whoever gave them slipped.
+fn warn_of_order(sample: &automata::Sample, lines: &[ItemLine]) -> anyhow::Result<()> {
+    let mut order = Preorder::default();
+    for (place, item) in sample.items().iter().enumerate() {
+        match fact(item) {
+            None | Some(Fact::Label { .. }) => {}
+            Some(fact) => order.add(Some(AnswerId(u32::try_from(place)?)), &fact),
+        }
+    }
+    let Some(conflict) = order.conflict() else {
+        return Ok(());
+    };
+    eprintln!(
+        "warning: no order agrees with these lines. {} What is found treats them all alike.",
+        output::because(conflict.cause)
+    );
+    for answer in &conflict.answers {
+        let line = &lines[answer.0 as usize];
+        eprintln!("  line {}: {}", line.number, line.text);
+    }
+    Ok(())
 }
 
 /// What an item says of the language; none if nothing.
@@ -225,9 +254,10 @@ fn explain(failure: &Failure, lines: &[ItemLine], format: Output) -> anyhow::Res
                     .collect(),
                 minimal: contradiction.minimal,
                 max_states: match contradiction.cause {
-                    Cause::Order | Cause::MemRep => None,
+                    Cause::Order | Cause::Equality | Cause::MemRep => None,
                     Cause::States { bound } => Some(bound),
                 },
+                cause: output::cause(contradiction.cause),
             },
             Failure::OverBudget { at_least } => Nothing::OverBudget {
                 at_least: *at_least,
@@ -246,8 +276,11 @@ fn explain(failure: &Failure, lines: &[ItemLine], format: Output) -> anyhow::Res
 
 fn name_lines(contradiction: &Contradiction, lines: &[ItemLine]) -> anyhow::Result<()> {
     output::line(match contradiction.cause {
-        Cause::Order | Cause::MemRep => {
-            "No automaton of any size: these lines contradict each other.".to_owned()
+        cause @ (Cause::Order | Cause::Equality | Cause::MemRep) => {
+            format!(
+                "No automaton of any size: these lines contradict each other. {}",
+                output::because(cause)
+            )
         }
         Cause::States { bound } => format!(
             "No automaton with {} or fewer: these lines together need more. Raise `--max-states`, or drop one of them.",

@@ -1,24 +1,26 @@
 //! `memrep learn`: teaches a target by a scripted teacher, and tells what it
 //! took.
 
+mod check;
+mod trace;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::Context as _;
+use automata::Dfa;
 use automata::format::json::{Document, Provenance};
-use automata::{Alphabet, Dfa, Word};
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::files::{self, Content, Format};
 use super::output::{self, Output};
-use crate::bench::{Asked, Report, percentile, process_cpu, teach};
+use crate::bench::{Report, percentile, process_cpu, teach};
 use crate::concept::DfaClass;
-use crate::evidence::Comparison;
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Config, Learner, Question, Reply, Strategy};
+use crate::learner::{Config, Conformance, Learner, Progress, Strategy};
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, Target, TargetError, TeacherSettings,
 };
@@ -40,8 +42,13 @@ third in the dissertation's three-state form), zeros:N (no run of more than N
 zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
 of the dissertation), or the path of an automaton file (json or dot).
 
-Exit status: 0 if the target was learned, 1 if the questions ran out first, 2 if
-the arguments or a file are at fault.")]
+With --conformance, what the teacher agreed with is believed only after random
+words were judged: the line `checked` says how far one may trust it. Of a teacher that
+errs a wrong judgement may refute what was right; it is found out
+and dropped like any other, and the check goes on where it was.
+
+Exit status: 0 if the target was learned, 1 if the questions ran out first (also
+in the check), 2 if the arguments or a file are at fault.")]
 pub(crate) struct Args {
     /// What to learn: a name from the list below, or an automaton file.
     #[arg(long, value_name = "T")]
@@ -64,6 +71,11 @@ pub(crate) struct Args {
     /// The share of membership answers and comparisons that are wrong.
     #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = rate)]
     error_rate: f64,
+    /// After the teacher has agreed, have random words judged until what was
+    /// learned is wrong about at most a share EPS of them, with confidence
+    /// 1 - DELTA; as in `0.05,0.05`.
+    #[arg(long, value_name = "EPS,DELTA", allow_hyphen_values = true, value_parser = check::read)]
+    conformance: Option<Conformance>,
     /// Decides every random choice of learner and teacher.
     #[arg(long, value_name = "N", default_value = "0")]
     seed: u64,
@@ -173,6 +185,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         strategy: args.strategy,
         membership_cost: args.membership_cost,
         comparison_cost: args.comparison_cost,
+        conformance: args.conformance,
         seed: args.seed,
         budget: BUDGET,
         ..Config::default()
@@ -196,26 +209,40 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     progress.enable_steady_tick(Duration::from_millis(200));
     let mut printed = Ok(());
+    // The check and the batch of the last claim told.
+    let mut told = (0, 0);
     let report = teach(
         &mut learner,
         &mut teacher,
         args.max_questions,
         process_cpu,
         |asked| {
-            progress.set_message(format!("{} questions asked", asked.number));
+            progress.set_message(match asked.check {
+                None => format!("{} questions asked", asked.number),
+                Some(check) => format!(
+                    "{} questions asked; {} of {} random words judged",
+                    asked.number, check.judged, check.needed
+                ),
+            });
             if args.trace && printed.is_ok() {
-                printed = trace(args.format, &alphabet, asked);
+                printed = check::batch(args.format, asked, &mut told)
+                    .and_then(|()| trace::line(args.format, &alphabet, asked));
             }
         },
     );
     progress.finish_and_clear();
     printed?;
     let report = report?;
+    if args.trace {
+        let mut conflicts = report.conflicts.iter();
+        conflicts.try_for_each(|dropped| trace::conflict(args.format, dropped))?;
+    }
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, &target, args.seed, learned)?;
     }
     tell(args, &target, &report)?;
-    Ok(if report.learned.is_some() {
+    let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
+    Ok(if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(1)
@@ -275,6 +302,8 @@ struct Summary<'a> {
     cost: f64,
     dropped: u32,
     hurried: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    conformance: Option<check::Checked>,
     question_ms: Milliseconds,
     cpu_s: f64,
 }
@@ -319,6 +348,8 @@ fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()
             cost: report.cost,
             dropped: report.dropped,
             hurried: report.hurried,
+            conformance: (report.check.as_ref())
+                .map(|check| check::Checked::of(check, counts.conformance)),
             question_ms: times,
             cpu_s: rounded(report.cpu.as_secs_f64()),
         };
@@ -336,13 +367,26 @@ fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()
             args.max_questions
         ))?,
     }
+    if let Some(check) = &report.check {
+        check::tell(check, args.max_questions)?;
+    }
+    let judged = match (args.conformance, counts.conformance) {
+        (None, _) => String::new(),
+        (Some(_), 1) => ", 1 judgement to check the result".to_owned(),
+        (Some(_), judged) => format!(", {judged} judgements to check the result"),
+    };
     output::line(format!(
-        "asked: {} membership queries, {} comparisons, {} equivalence queries",
+        "asked: {} membership queries, {} comparisons, {} equivalence queries{judged}",
         counts.membership, counts.comparison, counts.equivalence
     ))?;
     output::line(format!(
-        "cost: {} (equivalence queries not counted)",
-        report.cost
+        "cost: {} (equivalence queries{} not counted)",
+        report.cost,
+        if args.conformance.is_some() {
+            " and the check"
+        } else {
+            ""
+        }
     ))?;
     if report.dropped > 0 {
         output::line(format!(
@@ -354,100 +398,4 @@ fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()
         "CPU time: {} ms a question (median; 95 % within {} ms)",
         times.p50, times.p95
     ))
-}
-
-/// One line of the trace for programs.
-#[derive(Serialize)]
-struct Line<'a> {
-    question: u32,
-    kind: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    first: Option<Vec<&'a str>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    second: Option<Vec<&'a str>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hypothesis: Option<&'a Dfa>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    word: Option<Vec<&'a str>>,
-    answer: &'static str,
-    #[serde(rename = "word", skip_serializing_if = "Option::is_none")]
-    counterexample: Option<Vec<&'a str>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    label: Option<bool>,
-}
-
-fn trace(format: Output, alphabet: &Alphabet, asked: &Asked<'_, Word, Dfa>) -> anyhow::Result<()> {
-    let number = asked.number;
-    let answer = answer(asked.reply);
-    if format == Output::Text {
-        let spelled = |word| output::spelled(alphabet, word);
-        let question = match asked.question {
-            Question::Membership { atom } => format!("is {} acceptable?", spelled(atom)),
-            Question::Comparison { first, second } => {
-                format!(
-                    "which is better, {} or {}?",
-                    spelled(first),
-                    spelled(second)
-                )
-            }
-            Question::Equivalence { hypothesis } => {
-                format!("is it this automaton with {} states?", hypothesis.size())
-            }
-        };
-        let shown = match asked.reply {
-            Reply::Counterexample { atom, label } => {
-                let verb = if *label { "accepted" } else { "rejected" };
-                format!("{answer}: {} is {verb}", spelled(atom))
-            }
-            _ => answer.to_owned(),
-        };
-        return output::line(format!("{number}. {question} {shown}"));
-    }
-    let spell = |word| Some(alphabet.spell(word).collect());
-    let mut line = Line {
-        question: number,
-        kind: "",
-        first: None,
-        second: None,
-        hypothesis: None,
-        word: None,
-        answer,
-        counterexample: None,
-        label: None,
-    };
-    match asked.question {
-        Question::Membership { atom } => {
-            line.kind = "membership";
-            line.word = spell(atom);
-        }
-        Question::Comparison { first, second } => {
-            line.kind = "comparison";
-            line.first = spell(first);
-            line.second = spell(second);
-        }
-        Question::Equivalence { hypothesis } => {
-            line.kind = "equivalence";
-            line.hypothesis = Some(hypothesis);
-        }
-    }
-    if let Reply::Counterexample { atom, label } = asked.reply {
-        line.counterexample = spell(atom);
-        line.label = Some(*label);
-    }
-    output::line(serde_json::to_string(&line)?)
-}
-
-/// A reply's name in files and on the wire.
-fn answer<A>(reply: &Reply<A>) -> &'static str {
-    match reply {
-        Reply::Accept => "accept",
-        Reply::Reject => "reject",
-        Reply::Compared(Comparison::First) => "first",
-        Reply::Compared(Comparison::Second) => "second",
-        Reply::Compared(Comparison::Equal) => "equal",
-        Reply::Compared(Comparison::Incomparable) => "incomparable",
-        Reply::Correct => "correct",
-        Reply::Counterexample { .. } => "counterexample",
-        Reply::Skip => "skip",
-    }
 }

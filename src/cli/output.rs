@@ -7,6 +7,8 @@ use anyhow::Context as _;
 use automata::{Alphabet, Word};
 use clap::ValueEnum;
 
+use crate::identify::Cause;
+
 /// For whom a command prints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Output {
@@ -31,4 +33,32 @@ pub(crate) fn spelled(alphabet: &Alphabet, word: &Word) -> String {
     }
     let symbols: Vec<&str> = alphabet.spell(word).collect();
     format!("`{}`", symbols.join(" "))
+}
+
+/// A cause's name for programs.
+pub(crate) fn cause(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Order => "order",
+        Cause::Equality => "equality",
+        Cause::MemRep => "membership",
+        Cause::States { .. } => "states",
+    }
+}
+
+/// Why answers, "they", cannot stand together.
+pub(crate) fn because(cause: Cause) -> String {
+    match cause {
+        Cause::Order => "Followed round, they say that something is better than itself.".to_owned(),
+        Cause::Equality => {
+            "They say of the same two words that they are equally good, and that one is better."
+                .to_owned()
+        }
+        Cause::MemRep => {
+            "They accept a word that is no better than one that they reject.".to_owned()
+        }
+        Cause::States { bound: 1 } => "No automaton with 1 state fits them.".to_owned(),
+        Cause::States { bound } => {
+            format!("No automaton with {bound} states or fewer fits them.")
+        }
+    }
 }

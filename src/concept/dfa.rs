@@ -1,10 +1,16 @@
 //! The languages of deterministic finite automata, by their number of states.
 
 use automata::{Alphabet, Dfa, Word};
+use rand::RngExt;
+use rand::seq::IndexedRandom;
+use rand_chacha::ChaCha8Rng;
 
 use super::{ConceptClass, End, Failure, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
 use crate::identify::{self, Identifier, Settings};
+
+/// Words up to this length are drawn to check even the smallest hypothesis.
+const LONGEST: usize = 10;
 
 /// All regular languages over an alphabet: the concepts are minimal automata,
 /// the atoms words, and the size is the number of states.
@@ -82,4 +88,44 @@ impl ConceptClass for DfaClass {
     fn atoms(&self) -> Box<dyn Iterator<Item = Word> + '_> {
         Box::new(self.alphabet.words())
     }
+
+    /// Half of the words are drawn from those that the hypothesis accepts and
+    /// half from those it rejects: of all words, many a task accepts next to
+    /// none, and to judge one rejected word after another would bear out little.
+    fn draw(&self, hypothesis: &Dfa, count: usize, random: &mut ChaCha8Rng) -> Vec<Word> {
+        let complement = hypothesis.complement();
+        let sides = [hypothesis, &complement].map(|side| {
+            let words = side.word_counts(longest(hypothesis));
+            let lengths: Vec<usize> = (0..=words.longest())
+                .filter(|&length| words.of_length(length).bits() > 0)
+                .collect();
+            (words, lengths)
+        });
+        let draw = |_| {
+            let drawn = usize::from(random.random::<bool>());
+            let side = if sides[drawn].1.is_empty() {
+                1 - drawn
+            } else {
+                drawn
+            };
+            let (words, lengths) = &sides[side];
+            let &length = lengths.choose(random)?;
+            words.sample_of_length(length, random)
+        };
+        (0..count).filter_map(draw).collect()
+    }
+
+    fn drawn_from(&self, hypothesis: &Dfa) -> String {
+        let longest = longest(hypothesis);
+        format!(
+            "words of up to {longest} symbols, half of them accepted by it and half rejected, \
+             every length and every word of a length equally likely"
+        )
+    }
+}
+
+/// The longest word by which a hypothesis is checked. Another language with as
+/// many states differs from it on a word shorter than twice their number.
+fn longest(hypothesis: &Dfa) -> usize {
+    LONGEST.max(2 * hypothesis.size())
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use rand::SeedableRng;
 use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
@@ -277,5 +277,22 @@ impl ConceptClass for FiniteClass {
 
     fn atoms(&self) -> Box<dyn Iterator<Item = FiniteAtom> + '_> {
         Box::new((0..self.atoms as u32).map(FiniteAtom))
+    }
+
+    fn draw(
+        &self,
+        _hypothesis: &FiniteConcept,
+        count: usize,
+        random: &mut ChaCha8Rng,
+    ) -> Vec<FiniteAtom> {
+        if self.atoms == 0 {
+            return Vec::new();
+        }
+        let draw = |_| FiniteAtom(random.random_range(0..self.atoms as u32));
+        (0..count).map(draw).collect()
+    }
+
+    fn drawn_from(&self, _hypothesis: &FiniteConcept) -> String {
+        format!("any of {}, all equally likely", self.atoms)
     }
 }

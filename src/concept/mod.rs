@@ -10,13 +10,19 @@ mod preorder;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-pub use crate::belief::{End, Ending, Heard};
+use rand::seq::IndexedRandom;
+use rand_chacha::ChaCha8Rng;
+
 use crate::belief::{Tally, compared};
+pub use crate::belief::{End, Ending, Heard};
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use preorder::Preorder;
+
+/// The atoms that are drawn from where a class knows no better distribution.
+const DRAWN: usize = 1024;
 
 /// Different concepts of the smallest consistent size.
 #[derive(Clone, Debug)]
@@ -89,6 +95,28 @@ pub trait ConceptClass {
 
     /// The atoms of the universe, simplest first; endless for infinite ones.
     fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
+
+    /// `count` independent draws from the distribution of atoms by which the
+    /// hypothesis is checked; none only if there is no atom. Unless a class does
+    /// better, the simplest atoms, all alike.
+    fn draw(
+        &self,
+        hypothesis: &Self::Concept,
+        count: usize,
+        random: &mut ChaCha8Rng,
+    ) -> Vec<Self::Atom> {
+        let _ = hypothesis;
+        let atoms: Vec<Self::Atom> = self.atoms().take(DRAWN).collect();
+        let draw = |_| atoms.choose(random).cloned();
+        (0..count).filter_map(draw).collect()
+    }
+
+    /// The distribution of [`Self::draw`], as a phrase that can stand in
+    /// brackets.
+    fn drawn_from(&self, hypothesis: &Self::Concept) -> String {
+        let _ = hypothesis;
+        format!("any of the {DRAWN} simplest, all equally likely")
+    }
 }
 
 /// What was heard, as a concept sees it.

@@ -141,9 +141,7 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
     /// preferences, then an accepted atom below a rejected one. Of each kind
     /// one with the fewest answers.
     pub fn conflict(&self) -> Option<Contradiction> {
-        let order = || Some((self.cycle()?, Cause::Order));
-        let memrep = || Some((self.misplaced()?, Cause::MemRep));
-        let (answers, cause) = order().or_else(memrep)?;
+        let answers = self.cycle().or_else(|| self.misplaced())?;
         // The fewest facts are the fewest answers unless one answer brought
         // several facts; then some of these answers may be superfluous.
         let mut minimal = answers.clone();
@@ -154,6 +152,7 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
                 minimal = rest;
             }
         }
+        let cause = self.restricted(&minimal).cause();
         Some(Contradiction {
             answers: minimal.into_iter().collect(),
             cause,
@@ -170,9 +169,30 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
         self.cycle().is_some() || self.misplaces_membership()
     }
 
+    /// Why these facts, which are contradictory, cannot stand.
+    fn cause(&self) -> Cause {
+        if self.part(|_| true, |edge| edge.strict).cycle().is_some() {
+            Cause::Order
+        } else if self.cycle().is_some() {
+            Cause::Equality
+        } else {
+            Cause::MemRep
+        }
+    }
+
     /// The same with the facts known from the start and those of `answers` only.
     fn restricted(&self, answers: &BTreeSet<AnswerId>) -> Self {
         let keeps = |answer: Option<AnswerId>| answer.is_none_or(|a| answers.contains(&a));
+        self.part(keeps, |_| true)
+    }
+
+    /// The same with the labels and edges of some answers, and of these edges
+    /// some.
+    fn part(
+        &self,
+        keeps: impl Fn(Option<AnswerId>) -> bool,
+        keeps_edge: impl Fn(&Edge) -> bool,
+    ) -> Self {
         let mut restricted = Self {
             ids: self.ids.clone(),
             above: vec![Vec::new(); self.ids.len()],
@@ -181,7 +201,8 @@ impl<A: Clone + Ord + Hash> Preorder<A> {
             ..Self::default()
         };
         restricted.labels.retain(|&(.., answer)| keeps(answer));
-        for edge in self.edges.iter().filter(|edge| keeps(edge.answer)) {
+        let edges = self.edges.iter().filter(|edge| keeps(edge.answer));
+        for edge in edges.filter(|edge| keeps_edge(edge)) {
             restricted.edge(edge.from, edge.to, edge.strict, edge.answer);
         }
         restricted

@@ -54,7 +54,8 @@ pub struct Settings {
 /// Facts that cannot stand together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contradiction {
-    /// A minimal set of answers: without any one of them its rest can stand.
+    /// A minimal set of answers: without any one of them its rest can stand (with
+    /// more states than the bound, unless the bound is the cause).
     /// In ascending order. Empty if the facts known at the start (those without
     /// an answer) are contradictory by themselves.
     pub answers: Vec<AnswerId>,
@@ -68,10 +69,13 @@ pub struct Contradiction {
 /// Why facts cannot stand together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// A cycle of preferences of which at least one is strict: no preorder at
-    /// all agrees. It is found by [`crate::concept::Preorder`]; an identifier,
-    /// which reads `≺` as Eq. 5.4 does, never reports it.
+    /// A cycle of strict preferences: no preorder at all agrees. It is found by
+    /// [`crate::concept::Preorder`]; an identifier, which reads `≺` as Eq. 5.4
+    /// does, reports neither this nor [`Self::Equality`].
     Order,
+    /// Atoms that are equally good, of which a strict preference sets one above
+    /// the other, directly or by way of others.
+    Equality,
     /// An accepted word below a rejected one (or a word with two labels): no
     /// language at all is consistent.
     MemRep,

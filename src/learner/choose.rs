@@ -35,8 +35,11 @@ impl<C: ConceptClass> Learner<C> {
             return (Step::Conflict(conflict), None);
         }
         if let Some(hypothesis) = self.agreed() {
-            let step = Step::Done {
-                hypothesis: hypothesis.clone(),
+            let step = match self.unjudged(&hypothesis) {
+                Some(atom) => ask(Question::Membership { atom }, None, false),
+                None => Step::Done {
+                    hypothesis: hypothesis.clone(),
+                },
             };
             return (step, Some(hypothesis));
         }

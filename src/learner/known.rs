@@ -52,9 +52,13 @@ impl<A: Clone + Ord + Hash> Known<A> {
         !self.skipped.contains(atom) && self.order.label(atom).is_none()
     }
 
-    /// Whether a comparison of these two may teach something.
+    /// Whether a comparison of these two may teach something. Where the labels of
+    /// both are known, every answer that does not contradict them says nothing
+    /// about any label.
     pub(super) fn may_compare(&self, first: &A, second: &A) -> bool {
+        let labelled = |atom| self.order.label(atom).is_some();
         self.order.comparison(first, second).is_none()
+            && !(labelled(first) && labelled(second))
             && !self
                 .skipped_pairs
                 .contains(&sorted(first.clone(), second.clone()))

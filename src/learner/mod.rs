@@ -7,6 +7,7 @@
 
 mod bayes;
 mod choose;
+mod conformance;
 mod exp4;
 mod experts;
 mod known;
@@ -16,6 +17,8 @@ use std::hash::Hash;
 
 use serde::{Deserialize, Serialize};
 
+use self::conformance::Check;
+pub use self::conformance::{BATCH, Claim, Conformance, ConformanceError, Progress};
 use self::experts::Bandit;
 pub use self::experts::{Losses, Round};
 use self::known::Known;
@@ -52,6 +55,9 @@ pub struct Config {
     pub shortest_counterexamples: bool,
     /// Whether answers may be wrong, so that they are evidence and no facts.
     pub robust: bool,
+    /// What is to be claimed at the end; none: the teacher's agreement is enough.
+    #[serde(default)]
+    pub conformance: Option<Conformance>,
     /// Decides every random choice.
     pub seed: u64,
     /// The work that choosing one question may do.
@@ -72,6 +78,7 @@ impl Default for Config {
             equivalence_cost: 4.0 * EQUIVALENCE_COST,
             shortest_counterexamples: false,
             robust: false,
+            conformance: None,
             seed: 0,
             budget: 2_000_000,
         }
@@ -156,7 +163,8 @@ pub enum Step<A, C> {
     },
     /// The answers that stand contradict each other; one must be retracted.
     Conflict(Contradiction),
-    /// The teacher agreed with this concept.
+    /// The teacher agreed with this concept, and as many judgements as were asked
+    /// for ([`Config::conformance`]) have borne it out.
     Done {
         /// The concept learned.
         hypothesis: C,
@@ -172,6 +180,22 @@ pub struct Counts {
     pub comparison: u32,
     /// Equivalence queries.
     pub equivalence: u32,
+    /// Atoms judged to check a concept that the teacher had agreed with; they
+    /// are not among the membership queries.
+    #[serde(default)]
+    pub conformance: u32,
+}
+
+impl Counts {
+    /// Counts an answer; `checks` if it belongs to a check.
+    pub fn add<A, C>(&mut self, question: &Question<A, C>, checks: bool) {
+        *match question {
+            Question::Membership { .. } if checks => &mut self.conformance,
+            Question::Membership { .. } => &mut self.membership,
+            Question::Comparison { .. } => &mut self.comparison,
+            Question::Equivalence { .. } => &mut self.equivalence,
+        } += 1;
+    }
 }
 
 /// An answered question.
@@ -228,6 +252,9 @@ pub struct Learner<C: ConceptClass> {
     /// The move that follows from all this, once it was asked for.
     next: Option<Step<C::Atom, C::Concept>>,
     simplest: Option<C::Concept>,
+    check: Option<Check<C::Atom>>,
+    /// Whether the last step was made by the check.
+    checking: bool,
 }
 
 impl<C: ConceptClass> Learner<C> {
@@ -245,6 +272,8 @@ impl<C: ConceptClass> Learner<C> {
             bandit: Bandit::default(),
             next: None,
             simplest: None,
+            check: None,
+            checking: false,
         };
         learner.fold();
         learner
@@ -276,6 +305,7 @@ impl<C: ConceptClass> Learner<C> {
         self.entries.push(entry);
         self.next = None;
         self.simplest = None;
+        self.checking = false;
         Ok(())
     }
 
@@ -302,6 +332,7 @@ impl<C: ConceptClass> Learner<C> {
         if let Some(step) = &self.next {
             return step.clone();
         }
+        self.checking = false;
         let (step, simplest) = self.choose();
         self.next = Some(step.clone());
         self.simplest = simplest;
@@ -311,12 +342,9 @@ impl<C: ConceptClass> Learner<C> {
     /// The standing answers, by kind. Skipped questions are not answered.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
-        for entry in &self.entries {
-            match (&entry.question, &entry.reply) {
-                (_, Reply::Skip) => {}
-                (Question::Membership { .. }, _) => counts.membership += 1,
-                (Question::Comparison { .. }, _) => counts.comparison += 1,
-                (Question::Equivalence { .. }, _) => counts.equivalence += 1,
+        for (entry, checks) in self.checks() {
+            if entry.reply != Reply::Skip {
+                counts.add(&entry.question, checks);
             }
         }
         counts
@@ -386,6 +414,8 @@ impl<C: ConceptClass> Learner<C> {
         }
         self.next = None;
         self.simplest = None;
+        self.check = None;
+        self.checking = false;
     }
 
     /// The concept that the teacher agreed with last, unless later answers

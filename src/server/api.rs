@@ -133,6 +133,7 @@ fn describe(session: &Session, position: &Position) -> Value {
         Position::Conflict(conflict) => {
             let mut value = serde_json::to_value(conflict).unwrap_or_default();
             value["kind"] = "conflict".into();
+            value["message"] = session.explain(conflict).into();
             value
         }
         Position::Done(hypothesis) => {

@@ -15,7 +15,7 @@ use super::forms::{Faults, Form};
 use super::views::{Bar, Chip, PastView, RuleView, Shell, WordView, chips, render};
 use super::{export, start};
 use crate::learner::{Counts, Question, Reply};
-use crate::session::{ConflictCause, Decision, MAX_STATES, Position, Session};
+use crate::session::{Decision, MAX_STATES, Position, Session};
 use crate::store::SessionId;
 
 /// A form's body, or why it is none.
@@ -82,7 +82,8 @@ struct ConflictPage {
     bar: Bar,
     notice: Option<String>,
     items: Vec<PastView>,
-    cause: ConflictCause,
+    /// Why the answers cannot all be true.
+    message: String,
     minimal: bool,
     bound: Option<usize>,
     larger: Option<usize>,
@@ -180,7 +181,7 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 .iter()
                 .filter_map(|&number| PastView::of(number, session))
                 .collect(),
-            cause: conflict.cause,
+            message: session.explain(conflict),
             minimal: conflict.minimal,
             bound: conflict.bound,
             larger: conflict

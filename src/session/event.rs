@@ -105,6 +105,9 @@ pub struct Conflict {
 pub enum ConflictCause {
     /// Something would be better than itself.
     Order,
+    /// Things that are equally good would not be. Logs of before this cause was
+    /// told apart have [`Self::Order`] for it.
+    Equality,
     /// Something acceptable would be worse than something that is not.
     Membership,
     /// Every automaton that fits has more states than are allowed.
@@ -115,6 +118,7 @@ impl Conflict {
     fn of(contradiction: &Contradiction) -> Self {
         let (cause, bound) = match contradiction.cause {
             Cause::Order => (ConflictCause::Order, None),
+            Cause::Equality => (ConflictCause::Equality, None),
             Cause::MemRep => (ConflictCause::Membership, None),
             Cause::States { bound } => (ConflictCause::States, Some(bound)),
         };

@@ -12,6 +12,7 @@ mod automaton;
 mod config;
 mod decide;
 mod event;
+mod explain;
 mod reader;
 mod ready;
 mod task;

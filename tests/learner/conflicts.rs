@@ -1,12 +1,16 @@
-//! The three kinds of contradictions are told apart, at once, and small.
+//! The four kinds of contradictions are told apart, at once, and small.
 
+use automata::{Alphabet, Dfa, Word};
 use memrep::concept::{Cause, DfaClass, FiniteAtom, FiniteClass, FiniteConcept};
-use memrep::evidence::{AnswerId, Comparison};
+use memrep::evidence::{AnswerId, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Learner, Question, Reply, Step, Strategy};
 use memrep::oracle::Target;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use crate::finite::config;
+use crate::implied::is_possible;
 
 fn finite() -> Learner<FiniteClass> {
     let columns = (0..8u8).map(|set| (1, (0..3).map(|atom| set >> atom & 1 == 1).collect()));
@@ -46,15 +50,158 @@ fn conflict(learner: &mut Learner<FiniteClass>) -> (Vec<u32>, Cause) {
 
 #[test]
 fn a_cycle_is_told_and_mended() {
-    let mut learner = finite();
-    judge(&mut learner, 0, 2, true);
-    compare(&mut learner, 1, (0, 1), Comparison::First);
-    compare(&mut learner, 2, (1, 2), Comparison::Equal);
-    assert!(matches!(learner.next(), Step::Ask { .. }));
-    compare(&mut learner, 3, (0, 2), Comparison::Second);
-    assert_eq!(conflict(&mut learner), (vec![1, 2, 3], Cause::Order));
-    assert!(learner.retract(AnswerId(2)));
-    assert!(matches!(learner.next(), Step::Ask { .. }));
+    let answers = [
+        (Comparison::First, Cause::Order),
+        (Comparison::Equal, Cause::Equality),
+    ];
+    for (middle, cause) in answers {
+        let mut learner = finite();
+        judge(&mut learner, 0, 2, true);
+        compare(&mut learner, 1, (0, 1), Comparison::First);
+        compare(&mut learner, 2, (1, 2), middle);
+        assert!(matches!(learner.next(), Step::Ask { .. }));
+        compare(&mut learner, 3, (0, 2), Comparison::Second);
+        assert_eq!(conflict(&mut learner), (vec![1, 2, 3], cause));
+        assert!(learner.retract(AnswerId(2)));
+        assert!(matches!(learner.next(), Step::Ask { .. }));
+    }
+}
+
+/// All tables with at most two states over two symbols.
+fn small_automata(alphabet: &Alphabet) -> Vec<Dfa> {
+    let mut all = Vec::new();
+    for states in 1..=2usize {
+        for code in 0..states.pow(2 * states as u32) << states {
+            let mut rest = code >> states;
+            let mut next = || {
+                let state = rest % states;
+                rest /= states;
+                state
+            };
+            let delta: Vec<Vec<usize>> = (0..states).map(|_| vec![next(), next()]).collect();
+            let accepting = (0..states).map(|state| code >> state & 1 == 1).collect();
+            all.push(Dfa::new(alphabet.clone(), 0, accepting, &delta).unwrap());
+        }
+    }
+    assert_eq!(all.len(), 2 + 64);
+    all
+}
+
+/// Why facts cannot stand, by trying; none if they can.
+fn trouble(facts: &[Fact<Word>], automata: &[Dfa]) -> Option<Cause> {
+    let part = |keeps: fn(&Fact<Word>) -> bool| -> Vec<Fact<Word>> {
+        facts.iter().filter(|fact| keeps(fact)).cloned().collect()
+    };
+    let strict = part(|fact| matches!(fact, Fact::Below { .. }));
+    let order = part(|fact| matches!(fact, Fact::Below { .. } | Fact::Equal { .. }));
+    // Who cannot tell has claimed nothing.
+    let claims = part(|fact| !matches!(fact, Fact::Incomparable { .. }));
+    let fits = |dfa: &Dfa| {
+        claims
+            .iter()
+            .all(|fact| fact.holds(|word| dfa.accepts(word)))
+    };
+    if !is_possible(&strict) {
+        Some(Cause::Order)
+    } else if !is_possible(&order) {
+        Some(Cause::Equality)
+    } else if !is_possible(&claims) {
+        Some(Cause::MemRep)
+    } else {
+        (!automata.iter().any(fits)).then_some(Cause::States { bound: 2 })
+    }
+}
+
+/// After any answers to any questions there is a conflict exactly if they cannot
+/// stand. What is blamed cannot stand for the cause told, holds no answer too
+/// many, and has no part in what was given.
+#[test]
+fn every_contradiction_is_found_at_once_and_minimal() {
+    let alphabet = Alphabet::new(["a", "b"]).unwrap();
+    let automata = small_automata(&alphabet);
+    let words: Vec<Word> = alphabet.words_up_to(2).collect();
+    let given = [
+        Fact::Label {
+            atom: words[0].clone(),
+            accepted: true,
+        },
+        Fact::Below {
+            worse: words[1].clone(),
+            better: words[2].clone(),
+        },
+    ];
+    let mut seen = [0; 4];
+    for seed in 0..60 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let settings = Settings {
+            engine: EngineChoice::Auto,
+            max_states: 2,
+        };
+        let class = DfaClass::new(alphabet.clone(), settings);
+        let strategy = [Strategy::Thesis, Strategy::Membership][random.random_range(0..2)];
+        let mut learner = Learner::new(class, config(strategy, seed), given.to_vec());
+        for number in 0..25 {
+            let mut word = || words[random.random_range(0..words.len())].clone();
+            let (first, second) = (word(), word());
+            let (question, reply) = if first == second || random.random_ratio(1, 4) {
+                let reply = [Reply::Accept, Reply::Reject][random.random_range(0..2)].clone();
+                (Question::Membership { atom: first }, reply)
+            } else {
+                let answer = [
+                    Comparison::First,
+                    Comparison::Second,
+                    Comparison::Equal,
+                    Comparison::Incomparable,
+                ][random.random_range(0..4)];
+                (
+                    Question::Comparison { first, second },
+                    Reply::Compared(answer),
+                )
+            };
+            learner
+                .record(AnswerId(number), question, None, reply)
+                .unwrap();
+            loop {
+                let step = learner.next();
+                let facts = |keeps: &dyn Fn(AnswerId) -> bool| -> Vec<Fact<Word>> {
+                    let standing = learner.entries().iter().filter(|e| keeps(e.answer));
+                    let answered = standing.filter_map(memrep::learner::Entry::fact);
+                    given.iter().cloned().chain(answered).collect()
+                };
+                let all = facts(&|_| true);
+                let Step::Conflict(conflict) = step else {
+                    assert_eq!(trouble(&all, &automata), None, "{all:?}");
+                    break;
+                };
+                let blamed = |without: Option<AnswerId>| {
+                    facts(&|a| Some(a) != without && conflict.answers.contains(&a))
+                };
+                assert!(conflict.minimal && !conflict.answers.is_empty());
+                assert_eq!(trouble(&blamed(None), &automata), Some(conflict.cause));
+                // Without any one the others can stand, at least if more states
+                // are allowed where that was not the trouble.
+                let bounded = matches!(conflict.cause, Cause::States { .. });
+                for &answer in &conflict.answers {
+                    let rest = trouble(&blamed(Some(answer)), &automata);
+                    let stands = match rest {
+                        None => true,
+                        Some(Cause::States { .. }) => !bounded,
+                        Some(_) => false,
+                    };
+                    assert!(stands, "{conflict:?} without {answer:?}: {rest:?}");
+                }
+                seen[match conflict.cause {
+                    Cause::Order => 0,
+                    Cause::Equality => 1,
+                    Cause::MemRep => 2,
+                    Cause::States { .. } => 3,
+                }] += 1;
+                let place = random.random_range(0..conflict.answers.len());
+                assert!(learner.retract(conflict.answers[place]));
+            }
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 10), "{seen:?}");
 }
 
 #[test]

@@ -3,10 +3,13 @@
 
 mod bayes;
 mod brute;
+mod claims;
 mod conflicts;
+mod conformance;
 mod finite;
 mod fold;
 mod hurried;
+mod implied;
 mod order;
 mod refusals;
 mod tomita;

@@ -85,7 +85,13 @@ proptest! {
             prop_assert!(is_possible(&blamed(Some(answer))), "{:?} of {:?}", conflict, facts);
         }
         let labels = blamed(None).iter().any(|fact| matches!(fact, Fact::Label { .. }));
-        prop_assert_eq!(conflict.cause, if labels { Cause::MemRep } else { Cause::Order });
+        let equal = blamed(None).iter().any(|fact| matches!(fact, Fact::Equal { .. }));
+        let cause = match (labels, equal) {
+            (true, _) => Cause::MemRep,
+            (false, true) => Cause::Equality,
+            (false, false) => Cause::Order,
+        };
+        prop_assert_eq!(conflict.cause, cause);
     }
 }
 

@@ -24,7 +24,11 @@ fn dfa(value: &Value) -> Dfa {
 }
 
 /// The teacher's answer to a question of the API.
-fn answer(teacher: &mut ScriptedTeacher, alphabet: &Alphabet, question: &Value) -> Value {
+pub(crate) fn answer(
+    teacher: &mut ScriptedTeacher,
+    alphabet: &Alphabet,
+    question: &Value,
+) -> Value {
     let number = &question["number"];
     match question["kind"].as_str().unwrap() {
         "membership" => {
@@ -53,7 +57,7 @@ fn answer(teacher: &mut ScriptedTeacher, alphabet: &Alphabet, question: &Value) 
     }
 }
 
-async fn create(site: &Site, body: Value) -> String {
+pub(crate) async fn create(site: &Site, body: Value) -> String {
     let reply = site.post("/api/v1/sessions", body).await;
     assert_eq!(reply.status, StatusCode::CREATED, "{}", reply.text);
     format!("/api/v1/sessions/{}", reply.json()["id"].as_str().unwrap())
