@@ -159,9 +159,16 @@ impl Tally {
         self.refuted > 0
     }
 
+    /// The expected share of unsure answers that are wrong.
+    pub fn error_rate(&self) -> f64 {
+        let [wrong, right] = [0, 1].map(|kind| f64::from(self.errors[kind]) + ERRORS[kind]);
+        wrong / (wrong + right)
+    }
+
     /// The expected chances of the answers `first`, `second`, `equal` and
-    /// `incomparable` to a further comparison, by how its atoms end.
-    pub fn odds(&self, ending: Ending) -> [f64; 4] {
+    /// `incomparable` to a further comparison, by how its atoms end, if answers
+    /// are wrong at the rate `wrong`.
+    pub fn odds(&self, ending: Ending, wrong: f64) -> [f64; 4] {
         let share = |urn: usize, cell: usize| {
             let of = |cell: usize| f64::from(self.counts[cell]) + PRIOR[cell];
             of(cell) / URNS[urn].clone().map(of).sum::<f64>()
@@ -171,8 +178,19 @@ impl Tally {
             [strict, strict, share(urn, from + 1), share(urn, from + 2)]
         };
         match ending {
-            Ending::FirstOnly => [share(0, 0), 0.0, 0.0, share(0, 1)],
-            Ending::SecondOnly => [0.0, share(0, 0), 0.0, share(0, 1)],
+            // A wrong answer names the worse one.
+            Ending::FirstOnly => [
+                share(0, 0) * (1.0 - wrong),
+                share(0, 0) * wrong,
+                0.0,
+                share(0, 1),
+            ],
+            Ending::SecondOnly => [
+                share(0, 0) * wrong,
+                share(0, 0) * (1.0 - wrong),
+                0.0,
+                share(0, 1),
+            ],
             Ending::SamePlace => strict(1, 2),
             Ending::SameLabel => strict(2, 5),
             Ending::FirstFurther => [share(3, 8), share(3, 9), share(3, 10), share(3, 11)],

@@ -364,7 +364,22 @@ fn bad_input_is_told() {
             "allow a larger share of errors",
         ),
         ("learn --target robot --max-states 0", "--max-states"),
-        ("learn --target robot --strategy best", "thesis, membership"),
+        (
+            "learn --target robot --strategy thesis --robust",
+            "add `--strategy bayes`",
+        ),
+        (
+            "learn --target robot --promise shortest --counterexample random",
+            "add `--counterexample shortest`",
+        ),
+        (
+            "learn --target robot --equivalence-cost -1",
+            "give a number, 0 or more",
+        ),
+        (
+            "learn --target robot --strategy best",
+            "bayes, thesis, membership",
+        ),
         (
             "learn --target robot --save no/such/folder.json",
             "no/such/folder.json: cannot write it",
@@ -389,6 +404,30 @@ fn bad_input_is_told() {
             outcome.stderr
         );
     }
+}
+
+/// Where answers may be wrong, it tells how many are and which.
+#[test]
+fn wrong_answers_are_named() {
+    let folder = folder();
+    let learn = "learn --target tomita:6 --strategy bayes --robust --error-rate 0.2 --seed 3";
+    let outcome = memrep(&folder, &format!("{learn} --trace --format json"));
+    assert_eq!(outcome.status, Some(0));
+    let summary = summary(&outcome);
+    assert_eq!(summary["equivalent"], true);
+    assert_eq!(summary["dropped"], 0);
+    let doubted = summary["doubted"].as_array().unwrap();
+    let answers = summary["membership"].as_f64().unwrap() + summary["comparison"].as_f64().unwrap();
+    let share = doubted.len() as f64 / answers;
+    assert!(
+        (summary["wrong"].as_f64().unwrap() - share).abs() < 1e-3,
+        "{summary}"
+    );
+    assert!(!doubted.is_empty(), "a fifth of the answers are wrong");
+    let people = memrep(&folder, learn);
+    let percent = (share * 100.0).round();
+    let sentence = format!("doubted: about {percent} % of the answers seem wrong");
+    assert!(people.stdout.contains(&sentence), "{}", people.stdout);
 }
 
 /// The small form of the committed table: everything is learned, and the same

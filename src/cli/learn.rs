@@ -2,6 +2,7 @@
 //! took.
 
 mod check;
+mod doubts;
 mod trace;
 
 use std::path::{Path, PathBuf};
@@ -20,7 +21,7 @@ use super::output::{self, Output};
 use crate::bench::{Report, percentile, process_cpu, teach};
 use crate::concept::DfaClass;
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Config, Conformance, Learner, Progress, Strategy};
+use crate::learner::{Config, Conformance, Doubts, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, Target, TargetError, TeacherSettings,
 };
@@ -33,6 +34,7 @@ const BUDGET: u64 = 2_000_000;
 #[command(after_help = "Examples:
   memrep learn --target tomita:4
   memrep learn --target robot --teacher random --counterexample random --trace
+  memrep learn --target tomita:7 --error-rate 0.1 --strategy bayes --robust
   memrep learn --target task.json --membership-cost 8 --save learned.json
   memrep learn --target tomita:5 --comparison-cost inf --format json
     {\"target\":\"tomita:5\",\"strategy\":\"thesis\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
@@ -59,8 +61,12 @@ pub(crate) struct Args {
     /// The cost of a comparison, positive; `inf`: never ask one.
     #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = cost)]
     comparison_cost: f64,
+    /// The cost of an equivalence query, 0 or more; four times a membership query
+    /// if not given. Strategy bayes shows an automaton when that is worth it.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = cost_or_nothing)]
+    equivalence_cost: Option<f64>,
     /// How questions are chosen.
-    #[arg(long, value_name = "S", default_value = "thesis")]
+    #[arg(long, value_name = "S", default_value = "bayes")]
     strategy: Strategy,
     /// The preference order of the teacher.
     #[arg(long, value_name = "ORDER", default_value = "ordered")]
@@ -71,6 +77,15 @@ pub(crate) struct Args {
     /// The share of membership answers and comparisons that are wrong.
     #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = rate)]
     error_rate: f64,
+    /// Take answers for evidence and not for facts: any may be wrong, how many
+    /// are is learned on the way, and what seems wrong is asked in other words.
+    /// Counterexamples count as true. Needs `--strategy bayes`.
+    #[arg(long)]
+    robust: bool,
+    /// What the teacher promises: `shortest`, that no counterexample could be
+    /// shorter. Needs `--counterexample shortest`.
+    #[arg(long, value_name = "WHAT")]
+    promise: Option<Promise>,
     /// After the teacher has agreed, have random words judged until what was
     /// learned is wrong about at most a share EPS of them, with confidence
     /// 1 - DELTA; as in `0.05,0.05`.
@@ -83,8 +98,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value = "1000")]
     max_questions: u32,
     /// The largest automaton to consider, in states; 64 if not given, and 8
-    /// where the teacher errs: wrong answers look like further states, and a
-    /// bound not far above the target's size finds them out.
+    /// where the teacher errs (unless `--robust`): wrong answers look like
+    /// further states, and a bound not far above the target's size finds them
+    /// out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     max_states: Option<u16>,
     /// Start with nothing known; otherwise the label of the empty word is known
@@ -116,6 +132,20 @@ fn finite_cost(text: &str) -> Result<f64, String> {
         Ok(cost) if cost > 0.0 && cost.is_finite() => Ok(cost),
         _ => Err("give a positive number".to_owned()),
     }
+}
+
+fn cost_or_nothing(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(cost) if cost >= 0.0 && cost.is_finite() => Ok(cost),
+        _ => Err("give a number, 0 or more".to_owned()),
+    }
+}
+
+/// What a teacher may promise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Promise {
+    /// No counterexample could be shorter.
+    Shortest,
 }
 
 fn rate(text: &str) -> Result<f64, String> {
@@ -174,9 +204,21 @@ impl ValueEnum for Counterexamples {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.robust && args.strategy != Strategy::Bayes {
+        anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    }
+    if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
+        anyhow::bail!(
+            "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
+        );
+    }
     let target = target(args)?;
     let alphabet = target.dfa().alphabet().clone();
-    let usual_bound = if args.error_rate > 0.0 { 8 } else { 64 };
+    let usual_bound = if args.error_rate > 0.0 && !args.robust {
+        8
+    } else {
+        64
+    };
     let settings = Settings {
         engine: EngineChoice::Auto,
         max_states: usize::from(args.max_states.unwrap_or(usual_bound)),
@@ -185,6 +227,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         strategy: args.strategy,
         membership_cost: args.membership_cost,
         comparison_cost: args.comparison_cost,
+        equivalence_cost: (args.equivalence_cost)
+            .unwrap_or(EQUIVALENCE_COST * args.membership_cost),
+        shortest_counterexamples: args.promise.is_some(),
+        robust: args.robust,
         conformance: args.conformance,
         seed: args.seed,
         budget: BUDGET,
@@ -240,7 +286,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, &target, args.seed, learned)?;
     }
-    tell(args, &target, &report)?;
+    tell(args, &target, &report, learner.doubts())?;
     let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
     Ok(if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
@@ -301,6 +347,11 @@ struct Summary<'a> {
     equivalence: u32,
     cost: f64,
     dropped: u32,
+    /// The share of the answers that seem wrong, and which these are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wrong: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    doubted: Option<Vec<u32>>,
     hurried: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     conformance: Option<check::Checked>,
@@ -332,7 +383,12 @@ fn rounded(number: f64) -> f64 {
     (number * 1e3).round() / 1e3
 }
 
-fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()> {
+fn tell(
+    args: &Args,
+    target: &Target,
+    report: &Report<Dfa>,
+    doubts: Option<&Doubts>,
+) -> anyhow::Result<()> {
     let counts = report.counts;
     let times = Milliseconds::of(&report.question_times);
     if args.format == Output::Json {
@@ -347,6 +403,8 @@ fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()
             equivalence: counts.equivalence,
             cost: report.cost,
             dropped: report.dropped,
+            wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
+            doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
             hurried: report.hurried,
             conformance: (report.check.as_ref())
                 .map(|check| check::Checked::of(check, counts.conformance)),
@@ -393,6 +451,9 @@ fn tell(args: &Args, target: &Target, report: &Report<Dfa>) -> anyhow::Result<()
             "dropped: {} answers that contradicted others",
             report.dropped
         ))?;
+    }
+    if let Some(doubts) = doubts {
+        doubts::tell(doubts)?;
     }
     output::line(format!(
         "CPU time: {} ms a question (median; 95 % within {} ms)",

@@ -12,6 +12,9 @@ use crate::identify::{self, Identifier, Settings};
 /// Words up to this length are drawn to check even the smallest hypothesis.
 const LONGEST: usize = 10;
 
+/// As many shorter words are listed at most.
+const SHORTER: usize = 1000;
+
 /// All regular languages over an alphabet: the concepts are minimal automata,
 /// the atoms words, and the size is the number of states.
 pub struct DfaClass {
@@ -83,6 +86,12 @@ impl ConceptClass for DfaClass {
             .product(outside, |inside, outside| inside && !outside)
             .map(|difference| difference.accepted_words().take(count).collect())
             .unwrap_or_default()
+    }
+
+    /// The shorter words: of two words of one length neither is simpler.
+    fn simpler(&self, atom: &Word) -> Vec<Word> {
+        let shorter = self.alphabet.words().take(SHORTER);
+        shorter.take_while(|word| word.len() < atom.len()).collect()
     }
 
     fn atoms(&self) -> Box<dyn Iterator<Item = Word> + '_> {

@@ -13,8 +13,8 @@ use std::hash::Hash;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::belief::{Tally, compared};
 pub use crate::belief::{End, Ending, Heard};
+use crate::belief::{Tally, compared};
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
@@ -92,6 +92,14 @@ pub trait ConceptClass {
         outside: &Self::Concept,
         count: usize,
     ) -> Vec<Self::Atom>;
+
+    /// Atoms that are simpler than this one, so that a teacher who shows the
+    /// simplest counterexample would have shown them first: all of them, or the
+    /// simplest of very many. Unless a class knows more, none.
+    fn simpler(&self, atom: &Self::Atom) -> Vec<Self::Atom> {
+        let _ = atom;
+        Vec::new()
+    }
 
     /// The atoms of the universe, simplest first; endless for infinite ones.
     fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;

@@ -85,25 +85,9 @@ impl Growth {
         new.ln() + self.completion(used + 1, open - 1 + self.symbols)
     }
 
-    /// Whether all targets are as likely as each other.
-    pub(crate) fn is_even(&self) -> bool {
-        self.stay.to_bits() == self.leave.to_bits()
-    }
-
     /// The logarithm of the chance of an edge to a used state.
     pub(crate) fn old(&self, stays: bool) -> f64 {
         if stays { self.stay } else { self.leave }.ln()
-    }
-
-    /// The logarithm of the chance of a whole table, given that it uses all of
-    /// its states, whatever their numbers.
-    pub(crate) fn table(&self, delta: &[u32]) -> f64 {
-        let mut chance = -self.completion(1, self.symbols);
-        for (edge, &target) in delta.iter().enumerate() {
-            chance += self.old(target as usize == edge / self.symbols);
-        }
-        // Every numbering of the states but the first is such a table.
-        chance + (1..self.states).map(|n| (n as f64).ln()).sum::<f64>()
     }
 }
 
@@ -131,33 +115,6 @@ mod tests {
             let numberings: f64 = (1..states).map(|n| n as f64).product();
             let counted = growth.completion(1, 2).exp() * all / numberings;
             assert!((counted - tables).abs() < 1e-6, "{states}: {counted}");
-        }
-    }
-
-    /// The chances of all tables that use every state sum to 1.
-    #[test]
-    fn tables_sum_to_one() {
-        for manner in Manner::ALL {
-            let (states, symbols) = (3_u32, 2_usize);
-            let growth = Growth::new(manner, states as usize, symbols);
-            let edges = states as usize * symbols;
-            let mut sum = 0.0;
-            for code in 0..states.pow(edges as u32) {
-                let delta: Vec<u32> = (0..edges as u32)
-                    .map(|edge| code / states.pow(edge) % states)
-                    .collect();
-                let mut reached = [true, false, false];
-                for _ in 0..states {
-                    for (edge, &target) in delta.iter().enumerate() {
-                        reached[target as usize] |= reached[edge / symbols];
-                    }
-                }
-                if reached == [true; 3] {
-                    sum += growth.table(&delta).exp();
-                }
-            }
-            // Each is met in both numberings of the states 1 and 2.
-            assert!((sum - 2.0).abs() < 1e-9, "{manner:?}: {sum}");
         }
     }
 }

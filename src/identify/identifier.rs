@@ -167,7 +167,7 @@ impl Identifier {
     ) -> Result<Spread<Dfa>, Failure> {
         let bound = self.settings.max_states;
         let symbols = self.problem.alphabet().len();
-        let known = self.particles.take().filter(|known| known.precede(wish));
+        let known = self.particles.take().filter(|known| known.serve(wish));
         let mut particles =
             known.unwrap_or_else(|| Particles::new(symbols, bound, wish.decay, wish.seed));
         particles.hear(wish.heard);

@@ -41,6 +41,7 @@ impl<C: ConceptClass> Learner<C> {
                     hypothesis: hypothesis.clone(),
                 },
             };
+            self.look_back(&hypothesis);
             return (step, Some(hypothesis));
         }
         if self.config.strategy == Strategy::Bayes {

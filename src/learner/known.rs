@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::hash::Hash;
 
+use super::Question;
 use crate::concept::Preorder;
 use crate::evidence::{AnswerId, Fact};
 
@@ -14,6 +15,8 @@ pub(super) struct Known<A> {
     skipped: BTreeSet<A>,
     /// Each pair with its lesser atom first.
     skipped_pairs: BTreeSet<(A, A)>,
+    /// Atoms that were judged and may have been misjudged.
+    judged: BTreeSet<A>,
 }
 
 impl<A> Default for Known<A> {
@@ -22,6 +25,7 @@ impl<A> Default for Known<A> {
             order: Preorder::default(),
             skipped: BTreeSet::new(),
             skipped_pairs: BTreeSet::new(),
+            judged: BTreeSet::new(),
         }
     }
 }
@@ -40,6 +44,26 @@ impl<A: Clone + Ord + Hash> Known<A> {
     /// The teacher will not compare these two, in either order.
     pub(super) fn skip_pair(&mut self, first: A, second: A) {
         self.skipped_pairs.insert(sorted(first, second));
+    }
+
+    /// The question was answered, and the answer may be wrong. A comparison is
+    /// not repeated: were it the truth about two atoms of one label, the same
+    /// answer once more would say nothing.
+    pub(super) fn ask<C>(&mut self, question: &Question<A, C>) {
+        match question {
+            Question::Membership { atom } => {
+                self.judged.insert(atom.clone());
+            }
+            Question::Comparison { first, second } => {
+                self.skip_pair(first.clone(), second.clone());
+            }
+            Question::Equivalence { .. } => {}
+        }
+    }
+
+    /// Whether the very same membership query was answered before.
+    pub(super) fn was_judged(&self, atom: &A) -> bool {
+        self.judged.contains(atom)
     }
 
     /// The number of atoms that the teacher will not judge.

@@ -17,6 +17,7 @@ use std::hash::Hash;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::bayes::{Doubt, Doubts};
 use self::conformance::Check;
 pub use self::conformance::{BATCH, Claim, Conformance, ConformanceError, Progress};
 use self::experts::Bandit;
@@ -72,7 +73,7 @@ pub const EQUIVALENCE_COST: f64 = 4.0;
 impl Default for Config {
     fn default() -> Self {
         Self {
-            strategy: Strategy::Thesis,
+            strategy: Strategy::Bayes,
             membership_cost: 4.0,
             comparison_cost: 1.0,
             equivalence_cost: 4.0 * EQUIVALENCE_COST,
@@ -237,6 +238,14 @@ impl<A: Clone, C> Entry<A, C> {
     }
 }
 
+impl<A, C> Entry<A, C> {
+    /// Whether the reply is one that may be wrong where any may be: who shows a
+    /// counterexample has looked at the hypothesis.
+    fn is_doubtful(&self) -> bool {
+        !matches!(self.question, Question::Equivalence { .. })
+    }
+}
+
 /// The learner: evidence in, question out.
 pub struct Learner<C: ConceptClass> {
     class: C,
@@ -252,6 +261,8 @@ pub struct Learner<C: ConceptClass> {
     /// The move that follows from all this, once it was asked for.
     next: Option<Step<C::Atom, C::Concept>>,
     simplest: Option<C::Concept>,
+    /// What seems wrong, where answers may be.
+    doubts: Option<Doubts>,
     check: Option<Check<C::Atom>>,
     /// Whether the last step was made by the check.
     checking: bool,
@@ -272,6 +283,7 @@ impl<C: ConceptClass> Learner<C> {
             bandit: Bandit::default(),
             next: None,
             simplest: None,
+            doubts: None,
             check: None,
             checking: false,
         };
@@ -298,10 +310,15 @@ impl<C: ConceptClass> Learner<C> {
             round,
             reply,
         };
-        if let Some(fact) = entry.fact() {
+        if let Some(fact) = self.certain(&entry) {
             self.class.add(Some(answer), fact);
         }
-        absorb(&mut self.evidence, &mut self.bandit, &entry);
+        for fact in self.promised(&entry) {
+            self.evidence.add(Some(answer), &fact);
+            self.class.add(Some(answer), fact);
+        }
+        let doubting = self.doubts_answers();
+        absorb(&mut self.evidence, &mut self.bandit, &entry, doubting);
         self.entries.push(entry);
         self.next = None;
         self.simplest = None;
@@ -332,6 +349,7 @@ impl<C: ConceptClass> Learner<C> {
         if let Some(step) = &self.next {
             return step.clone();
         }
+        self.doubts = None;
         self.checking = false;
         let (step, simplest) = self.choose();
         self.next = Some(step.clone());
@@ -360,6 +378,12 @@ impl<C: ConceptClass> Learner<C> {
     /// ended before any was found.
     pub fn hypothesis(&self) -> Option<&C::Concept> {
         self.simplest.as_ref()
+    }
+
+    /// How often the answers that stand seem to be wrong, and which of them, as
+    /// of the last [`Self::next`]; none where answers count as facts.
+    pub fn doubts(&self) -> Option<&Doubts> {
+        self.doubts.as_ref()
     }
 
     /// What can be learned.
@@ -404,18 +428,40 @@ impl<C: ConceptClass> Learner<C> {
 
     /// Folds all entries anew.
     fn fold(&mut self) {
+        let doubting = self.doubts_answers();
         self.evidence = Known::default();
         self.bandit = Bandit::default();
         for fact in &self.given {
             self.evidence.add(None, fact);
         }
         for entry in &self.entries {
-            absorb(&mut self.evidence, &mut self.bandit, entry);
+            for fact in self.promised(entry) {
+                self.evidence.add(Some(entry.answer), &fact);
+            }
+            absorb(&mut self.evidence, &mut self.bandit, entry, doubting);
         }
         self.next = None;
         self.simplest = None;
         self.check = None;
         self.checking = false;
+    }
+
+    /// What a counterexample says beyond itself, if the teacher promised that no
+    /// simpler atom would have been one.
+    fn promised(&self, entry: &Entry<C::Atom, C::Concept>) -> Vec<Fact<C::Atom>> {
+        match (&entry.question, &entry.reply) {
+            (Question::Equivalence { hypothesis }, Reply::Counterexample { atom, .. })
+                if self.config.shortest_counterexamples =>
+            {
+                let simpler = self.class.simpler(atom).into_iter();
+                let label = |atom| Fact::Label {
+                    accepted: self.class.contains(hypothesis, &atom),
+                    atom,
+                };
+                simpler.map(label).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// The concept that the teacher agreed with last, unless later answers
@@ -429,20 +475,24 @@ impl<C: ConceptClass> Learner<C> {
                     (Question::Equivalence { hypothesis }, Reply::Correct) => Some(hypothesis),
                     _ => None,
                 })?;
-        let answers = self.entries.iter().filter_map(Entry::fact);
+        let answers = self.entries.iter().filter_map(|entry| self.certain(entry));
         let mut facts = self.given.iter().cloned().chain(answers);
         let stands = facts.all(|fact| fact.holds(|atom| self.class.contains(hypothesis, atom)));
         stands.then(|| hypothesis.clone())
     }
 }
 
-/// Folds one entry into what is known and into the bandit.
+/// Folds one entry into what is known and into the bandit. Answers that are
+/// doubted are known to have been given, no more.
 fn absorb<A: Clone + Ord + Hash, C>(
     evidence: &mut Known<A>,
     bandit: &mut Bandit,
     entry: &Entry<A, C>,
+    doubting: bool,
 ) {
-    if let Some(fact) = entry.fact() {
+    if doubting && entry.is_doubtful() {
+        evidence.ask(&entry.question);
+    } else if let Some(fact) = entry.fact() {
         evidence.add(Some(entry.answer), &fact);
     }
     if entry.reply == Reply::Skip {

@@ -12,4 +12,5 @@ mod hurried;
 mod implied;
 mod order;
 mod refusals;
+mod robust;
 mod tomita;

@@ -53,17 +53,23 @@ pub(crate) struct Particles {
     heard: Vec<Vec<Heard<Word>>>,
     script: Script,
     belief: Belief,
-    /// By ladder and level.
-    machines: Vec<[Machine; LEVELS.len()]>,
+    /// Where the chains were at the start and after every answer, so that an
+    /// answer can be taken back.
+    past: Vec<Places>,
     /// The consistent automata met since the last answer, with their shares of the
     /// posterior, up to a number that all share.
     met: BTreeMap<Table, f64>,
 }
 
+/// The table at which every chain is, by ladder and level.
+type Places = Vec<[(Vec<u8>, Vec<bool>); LEVELS.len()]>;
+
 impl Particles {
     /// Chains that heard nothing.
     pub(crate) fn new(symbols: usize, most: usize, decay: f64, seed: u64) -> Self {
-        let mut particles = Self {
+        let trivial = |number: usize| (vec![0; symbols], vec![number % 2 == 0]);
+        let start = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
+        Self {
             symbols,
             seed,
             decay,
@@ -71,14 +77,9 @@ impl Particles {
             heard: Vec::new(),
             script: Script::new(symbols),
             belief: Belief::new(0),
-            machines: Vec::new(),
+            past: vec![start],
             met: BTreeMap::new(),
-        };
-        let ground = particles.ground();
-        let trivial =
-            |number: usize| Machine::new(vec![0; symbols], vec![number % 2 == 0], &ground);
-        particles.machines = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
-        particles
+        }
     }
 
     fn ground(&self) -> Ground<'_> {
@@ -90,45 +91,57 @@ impl Particles {
         }
     }
 
-    /// Whether what was heard is the beginning of this.
-    pub(crate) fn precede(&self, wish: &Wish<'_, Word>) -> bool {
-        self.seed == wish.seed
-            && self.decay.to_bits() == wish.decay.to_bits()
-            && wish.heard.starts_with(&self.heard)
+    /// Whether these chains can go on to what is wished.
+    pub(crate) fn serve(&self, wish: &Wish<'_, Word>) -> bool {
+        self.seed == wish.seed && self.decay.to_bits() == wish.decay.to_bits()
     }
 
-    /// Hears what is new in `heard`, answer by answer: where that leads does not
-    /// depend on when it was heard.
+    /// Hears `heard`, answer by answer; what was heard before and is not in it is
+    /// forgotten. Where that leads does not depend on what was heard before.
     pub(crate) fn hear(&mut self, heard: &[Vec<Heard<Word>>]) {
-        for answer in &heard[self.heard.len()..] {
+        let mut common = (self.heard.iter().zip(heard))
+            .take_while(|(one, other)| one == other)
+            .count();
+        if common < self.heard.len() {
+            // What was met after the last common answer is not kept: it is heard
+            // once more.
+            common = common.saturating_sub(1);
+            self.heard.truncate(common);
+            self.past.truncate(common + 1);
+            self.script = Script::new(self.symbols);
+            for heard in self.heard.iter().flatten() {
+                self.script.add(heard);
+            }
+        }
+        for answer in &heard[common..] {
             self.heard.push(answer.clone());
             for heard in answer {
                 self.script.add(heard);
             }
             self.belief = Belief::new(self.script.len());
-            self.travel();
+            let (places, met) = self.travel();
+            self.past.push(places);
+            self.met = met;
         }
     }
 
-    /// Moves all chains and remembers what is met.
-    fn travel(&mut self) {
+    /// Where all chains come to from where they were, and what they meet.
+    fn travel(&self) -> (Places, BTreeMap<Table, f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(self.heard.len() as u64);
-        let mut machines = std::mem::take(&mut self.machines);
         let mut met = BTreeMap::new();
         let ground = self.ground();
-        let mut states = 0;
-        for machine in machines.iter_mut().flatten() {
-            machine.hear(&ground);
-            states += machine.states();
-        }
+        let machine = |(delta, output): &(Vec<u8>, Vec<bool>)| {
+            Machine::new(delta.clone(), output.clone(), &ground)
+        };
+        let start = self.past.last().expect("the start is never taken back");
+        let mut machines: Vec<[Machine; LEVELS.len()]> = (start.iter())
+            .map(|ladder| ladder.each_ref().map(machine))
+            .collect();
+        let states: usize = machines.iter().flatten().map(Machine::states).sum();
         let chains = LADDERS * LEVELS.len();
         let states = states as f64 / chains as f64;
-        let env: f64 = std::env::var("MOVES")
-            .ok()
-            .and_then(|v| v.parse().ok())
-            .unwrap_or(MOVES as f64);
-        let moves = env * (states / SMALL).powi(3).clamp(1.0, MOST);
+        let moves = MOVES as f64 * (states / SMALL).powi(3).clamp(1.0, MOST);
         let legs = moves as usize / chains / LEG;
         let mut mover = Mover::default();
         for ladder in &mut machines {
@@ -155,8 +168,9 @@ impl Particles {
             share(&mut met, found);
         }
         migrate(&mut machines);
-        self.machines = machines;
-        self.met = met;
+        let place = |machine: Machine| (machine.delta, machine.output);
+        let places = machines.into_iter().map(|ladder| ladder.map(place));
+        (places.collect(), met)
     }
 
     /// The consistent automata met since the last answer, with their shares of the

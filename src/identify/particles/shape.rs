@@ -8,6 +8,10 @@ use crate::identify::growth::{Growth, Manner, add_logs};
 /// where things are counted).
 const SHARES: [f64; 3] = [0.4, 0.4, 0.2];
 
+/// The share of the two languages of one state, where two and three states have
+/// 1 each.
+const TRIVIAL: f64 = 0.05;
+
 /// The prior of all sizes up to a bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
@@ -90,18 +94,11 @@ impl Shape {
     }
 }
 
+/// The logarithm of the share of a size: hardly anybody teaches that all is
+/// accepted, or nothing.
 fn size_prior(states: usize, decay: f64) -> f64 {
-    let env = |name: &str, default: f64| {
-        std::env::var(name)
-            .ok()
-            .and_then(|v| v.parse().ok())
-            .unwrap_or(default)
-    };
-    match states {
-        1 => env("P1", 0.05_f64).ln(),
-        2 => env("P2", 1.0_f64).ln(),
-        n => (n as f64 - 3.0) * decay.ln(),
-    }
+    let rank = states.saturating_sub(3) as f64;
+    rank * decay.ln() + if states == 1 { TRIVIAL.ln() } else { 0.0 }
 }
 
 /// The share of all tuples of permutations, one a symbol, of one point more than

@@ -6,7 +6,6 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::posterior::Posterior;
-use super::tune;
 use crate::belief::{End, Heard, Tally};
 use crate::concept::{ConceptClass, tally};
 use crate::learner::Learner;
@@ -47,10 +46,7 @@ impl<A: Clone + Ord + Hash> Table<A> {
             .iter()
             .map(|&place| &posterior.concepts[place])
             .collect();
-        let mut atoms: Vec<A> = class
-            .atoms()
-            .take(tune("ATOMS", SIMPLEST as f64) as usize)
-            .collect();
+        let mut atoms: Vec<A> = class.atoms().take(SIMPLEST).collect();
         let wanted = 1 + learner.evidence.skips();
         let mut separate = |one: &C::Concept, other: &C::Concept| {
             for (inside, outside) in [(one, other), (other, one)] {

@@ -3,6 +3,7 @@
 //! question of any kind that is worth most for its cost.
 
 mod atoms;
+mod doubts;
 mod posterior;
 mod price;
 mod value;
@@ -10,19 +11,13 @@ mod value;
 use rand::RngExt;
 
 use self::atoms::Table;
+pub use self::doubts::{Doubt, Doubts};
 use self::posterior::Posterior;
 use super::choose::{Move, ask, equivalence};
-use super::{Entry, Learner, Question, Step};
+use super::{Learner, Question, Step};
 use crate::belief::Heard;
 use crate::concept::{ConceptClass, Failure, Wish};
 use crate::evidence::Budget;
-
-pub(super) fn tune(name: &str, default: f64) -> f64 {
-    std::env::var(name)
-        .ok()
-        .and_then(|v| v.parse().ok())
-        .unwrap_or(default)
-}
 
 /// The sizes that are listed, from the smallest consistent one.
 const SIZES: usize = 4;
@@ -38,9 +33,9 @@ impl<C: ConceptClass> Learner<C> {
         let mut budget = Budget::new(self.config.budget);
         let heard = self.heard();
         let wish = Wish {
-            sizes: tune("SIZES", SIZES as f64) as usize,
-            decay: tune("DECAY", DECAY),
-            listed: tune("LISTED", LISTED as f64) as usize,
+            sizes: SIZES,
+            decay: DECAY,
+            listed: LISTED,
             heard: &heard,
             seed: self.config.seed,
         };
@@ -64,21 +59,19 @@ impl<C: ConceptClass> Learner<C> {
         let posterior = Posterior::new(spread);
         let top = posterior.concepts[0].clone();
         let table = Table::new(self, &posterior, &heard, &mut random);
-        let Some((best, worth)) = value::best(self, &table) else {
+        let wrong = if self.doubts_answers() {
+            let rate = doubts::error_rate(&table.tallies, &table.weights);
+            let (concepts, weights) = (&posterior.concepts, &posterior.weights);
+            self.doubts = Some(self.doubt(concepts, weights, rate));
+            rate
+        } else {
+            0.0
+        };
+        let Some((best, worth)) = value::best(self, &table, wrong) else {
             return (ask(equivalence(&top), None, hurried), Some(top));
         };
-        if std::env::var("TRACE").is_ok() {
-            eprintln!(
-                "n={} exact={} top={:.3} second={:.3} worth={:?} ask={:?}",
-                posterior.weights.len(),
-                posterior.exact,
-                posterior.weights[0],
-                posterior.weights.get(1).unwrap_or(&0.0),
-                worth,
-                best,
-            );
-        }
-        let question = if price::is_worth_showing(&self.config, &posterior, worth) {
+        let question = if price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong)
+        {
             equivalence(&top)
         } else {
             match best {
@@ -97,10 +90,16 @@ impl<C: ConceptClass> Learner<C> {
     fn heard(&self) -> Vec<Vec<Heard<C::Atom>>> {
         let sure = |fact| Heard { fact, sure: true };
         let given = self.given.iter().cloned().map(sure).collect();
-        let answered = self.entries.iter().filter_map(Entry::fact);
-        std::iter::once(given)
-            .chain(answered.map(|fact| vec![sure(fact)]))
-            .collect()
+        let doubting = self.doubts_answers();
+        let answered = self.entries.iter().filter_map(|entry| {
+            let said = Heard {
+                fact: entry.fact()?,
+                sure: !(doubting && entry.is_doubtful()),
+            };
+            let promised = self.promised(entry).into_iter().map(sure);
+            Some(std::iter::once(said).chain(promised).collect())
+        });
+        std::iter::once(given).chain(answered).collect()
     }
 }
 

@@ -11,7 +11,6 @@ pub(super) struct Posterior<C> {
     pub(super) concepts: Vec<C>,
     /// Their chances, which sum to 1.
     pub(super) weights: Vec<f64>,
-    pub(super) exact: bool,
 }
 
 impl<C> Posterior<C> {
@@ -36,7 +35,6 @@ impl<C> Posterior<C> {
                 .into_iter()
                 .map(|concept| concept.concept)
                 .collect(),
-            exact: spread.exact,
         }
     }
 }

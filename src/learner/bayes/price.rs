@@ -9,21 +9,23 @@
 //!
 //! with `E` and `a` the costs of an equivalence and a membership query.
 
-use super::posterior::Posterior;
+use super::entropy;
 use super::value::Worth;
-use super::{entropy, tune};
 use crate::learner::Config;
 
-/// What a counterexample tells, in membership queries.
+/// What a counterexample tells, in membership queries whose answers are right.
 const COUNTEREXAMPLE: f64 = 1.0;
-/// How much likelier to be wrong a likeliest concept is than the posterior has
-/// it, as the prior and the model of the teacher are not quite right.
-const OVERCONFIDENCE: f64 = 2.0;
+/// The same where answers may be wrong: nothing else is certain then.
+const CERTAIN_COUNTEREXAMPLE: f64 = 1.5;
+/// A doubted answer tells this share of a certain one at least: nobody could be
+/// taught by coin flips.
+const LEAST_TOLD: f64 = 0.1;
 
-/// Whether the equivalence query about the likeliest concept is worth more for
-/// its cost than the best other question.
-pub(super) fn is_worth_showing<C>(config: &Config, posterior: &Posterior<C>, other: Worth) -> bool {
-    let doubt = (1.0 - posterior.weights[0]).max(0.0);
+/// Whether the equivalence query about the likeliest concept, right with the
+/// chance `right`, is worth more for its cost than the best other question, if
+/// answers are wrong at the rate `wrong`.
+pub(super) fn is_worth_showing(config: &Config, right: f64, other: Worth, wrong: f64) -> bool {
+    let doubt = (1.0 - right).max(0.0);
     let unsure = entropy(&[doubt, 1.0 - doubt]);
     if unsure <= 0.0 {
         return true;
@@ -31,7 +33,13 @@ pub(super) fn is_worth_showing<C>(config: &Config, posterior: &Posterior<C>, oth
     // Of what is to be known about whether the hypothesis is right, the share
     // that the question tells.
     let refuted = (other.bits / unsure).min(1.0);
-    let wrong = (doubt * tune("OVER", OVERCONFIDENCE)).min(1.0);
-    let spared = config.equivalence_cost - tune("CEX", COUNTEREXAMPLE) * config.membership_cost;
-    wrong * refuted * spared <= (1.0 - wrong) * other.cost
+    let told = if wrong > 0.0 {
+        // By the capacity of a binary symmetric channel.
+        let capacity = 1.0 - entropy(&[wrong, 1.0 - wrong]);
+        CERTAIN_COUNTEREXAMPLE / capacity.max(LEAST_TOLD)
+    } else {
+        COUNTEREXAMPLE
+    };
+    let spared = config.equivalence_cost - told * config.membership_cost;
+    doubt * refuted * spared <= right * other.cost
 }

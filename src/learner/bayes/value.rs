@@ -20,6 +20,10 @@ impl Worth {
     }
 }
 
+/// What the very same membership query is worth once more, where answers may be
+/// wrong: a person may have a reason to err that has not gone away.
+const REPEATED: f64 = 0.7;
+
 /// Less information than this is none.
 const NOTHING: f64 = 1e-9;
 
@@ -27,6 +31,7 @@ const NOTHING: f64 = 1e-9;
 pub(super) fn best<C: ConceptClass>(
     learner: &Learner<C>,
     table: &Table<C::Atom>,
+    wrong: f64,
 ) -> Option<(Question<C::Atom, C::Concept>, Worth)> {
     let config = &learner.config;
     let mut best: Option<(Question<C::Atom, C::Concept>, Worth)> = None;
@@ -40,10 +45,13 @@ pub(super) fn best<C: ConceptClass>(
         .map(|ends| mass(ends, &table.weights))
         .collect();
     for (atom, &accept) in table.atoms.iter().zip(&accepts) {
-        let worth = Worth {
-            bits: entropy(&[accept, 1.0 - accept]),
+        let mut worth = Worth {
+            bits: judgement(accept, wrong),
             cost: config.membership_cost,
         };
+        if learner.evidence.was_judged(atom) {
+            worth.bits *= REPEATED;
+        }
         if beats(&best, worth) && learner.evidence.may_judge(atom) {
             best = Some((Question::Membership { atom: atom.clone() }, worth));
         }
@@ -51,7 +59,7 @@ pub(super) fn best<C: ConceptClass>(
     if !config.comparison_cost.is_finite() || config.strategy == Strategy::Membership {
         return best;
     }
-    let outlook = Outlook::new(table);
+    let outlook = Outlook::new(table, wrong);
     let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
     // Labels that are sure on both sides cannot be told apart.
     let stride = table.weights.len().div_ceil(ROUGHLY);
@@ -97,10 +105,10 @@ struct Outlook {
 }
 
 impl Outlook {
-    fn new<A>(table: &Table<A>) -> Self {
+    fn new<A>(table: &Table<A>, wrong: f64) -> Self {
         let part = |(tally, &weight): (&Tally, &f64)| {
             Ending::ALL.map(|ending| {
-                let odds = tally.odds(ending);
+                let odds = tally.odds(ending, wrong);
                 let mut part = [0.0; 8];
                 for (part, chance) in part.iter_mut().zip(odds) {
                     *part = (chance * weight) as f32;
@@ -133,6 +141,13 @@ impl Outlook {
             .sum();
         entropy - sums[4] / all
     }
+}
+
+/// The bits that an answer which is wrong at the rate `wrong` tells of an atom
+/// that is accepted with this chance.
+fn judgement(accept: f64, wrong: f64) -> f64 {
+    let heard = accept * (1.0 - wrong) + (1.0 - accept) * wrong;
+    entropy(&[heard, 1.0 - heard]) - entropy(&[wrong, 1.0 - wrong])
 }
 
 fn mass(ends: &[End], weights: &[f64]) -> f64 {
