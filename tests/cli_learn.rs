@@ -1,4 +1,4 @@
-//! `memrep learn` and `memrep bench` as a shell sees them.
+//! `memrep learn` as a shell sees it, and what all commands refuse.
 
 use std::process::Command;
 
@@ -275,11 +275,6 @@ fn bad_input_is_told() {
             "the extension does not tell the format",
         ),
         ("bench nothing", "unrecognized subcommand"),
-        ("bench thesis --trials 0", "--trials"),
-        (
-            "bench thesis --trials 1 --out cut.json",
-            "cannot make this folder",
-        ),
     ];
     for (arguments, message) in cases {
         let outcome = memrep(&folder, arguments);
@@ -290,32 +285,4 @@ fn bad_input_is_told() {
             outcome.stderr
         );
     }
-}
-
-/// The small form of the committed table: everything is learned, and the same
-/// seeds give the same bytes, times apart.
-#[test]
-fn the_experiment_is_reproducible() {
-    let folder = folder();
-    for out in ["one", "two"] {
-        let outcome = memrep(&folder, &format!("bench thesis --trials 1 --out {out}"));
-        assert_eq!(
-            outcome.status,
-            Some(0),
-            "{}{}",
-            outcome.stdout,
-            outcome.stderr
-        );
-    }
-    let read = |path: &str| std::fs::read_to_string(folder.path().join(path)).unwrap();
-    assert_eq!(read("one/thesis.csv"), read("two/thesis.csv"));
-    let counts = |page: String| page.split_once("## CPU time").unwrap().0.to_owned();
-    assert_eq!(counts(read("one/thesis.md")), counts(read("two/thesis.md")));
-    let csv = read("one/thesis.csv");
-    assert_eq!(csv.lines().count(), 1 + 14 * 5);
-    assert!(
-        csv.lines()
-            .skip(1)
-            .all(|line| line.split(',').nth(3) == Some("true"))
-    );
 }
