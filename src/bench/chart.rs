@@ -6,39 +6,39 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Points over a few ticks, for some series.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub(super) struct Panel {
     /// What stands above it.
-    pub title: String,
+    pub(super) title: String,
     /// What the ticks are.
-    pub x_title: String,
+    pub(super) x_title: String,
     /// What the values are.
-    pub y_title: String,
+    pub(super) y_title: String,
     /// The names of the ticks.
-    pub ticks: Vec<String>,
+    pub(super) ticks: Vec<String>,
     /// The series, the same in all panels of a chart.
-    pub series: Vec<Series>,
+    pub(super) series: Vec<Series>,
     /// A value to be marked by a line.
-    pub line: Option<f64>,
+    pub(super) line: Option<f64>,
 }
 
 /// One colour's points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub(super) struct Series {
     /// What it is called in the legend.
-    pub name: String,
+    pub(super) name: String,
     /// A point a tick, where there is one.
-    pub points: Vec<Option<Point>>,
+    pub(super) points: Vec<Option<Point>>,
 }
 
 /// A value between two others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub(super) struct Point {
     /// Where the mark is.
-    pub value: f64,
+    pub(super) value: f64,
     /// Where the bar begins.
-    pub low: f64,
+    pub(super) low: f64,
     /// Where the bar ends.
-    pub high: f64,
+    pub(super) high: f64,
 }
 
 /// A chart that could not be drawn.
@@ -199,7 +199,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let anchor = small.pos(Pos::new(HPos::Center, VPos::Top));
     for (tick, name) in panel.ticks.iter().enumerate() {
         let (x, y) = at(tick as f64, 0.0);
-        pixels.draw(&Text::new(name.clone(), (x, y + 6), anchor.clone()))?;
+        pixels.draw(&Text::new(name.clone(), (x, y + 10), anchor.clone()))?;
     }
     // Side by side, so that bars do not hide each other.
     let step = 0.7 / panel.series.len().max(1) as f64;

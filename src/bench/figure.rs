@@ -61,13 +61,13 @@ fn by_cost(
     };
     Panel {
         title: title.to_owned(),
-        x_title: "cost C of a membership query".to_owned(),
+        x_title: "cost C of a membership query (–: no comparisons)".to_owned(),
         y_title: y_title.to_owned(),
         ticks: results
             .plan
             .costs
             .iter()
-            .map(|cost| cost.map_or("no comparisons".to_owned(), |cost| cost.to_string()))
+            .map(|cost| cost.map_or("–".to_owned(), |cost| cost.to_string()))
             .collect(),
         series: results.columns().iter().map(series).collect(),
         line: None,
@@ -75,7 +75,7 @@ fn by_cost(
 }
 
 fn costs(results: &Results, group: &Group) -> Panel {
-    by_cost(results, &group.name, "all-in cost / C", |key, cost| {
+    by_cost(results, &group.name, "all-in cost, membership queries", |key, cost| {
         let cell = results.cell(group, key, cost, 0);
         mean(&cell, |run| run.all_in() / run.cost.map_or(1.0, f64::from))
     })

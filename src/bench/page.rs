@@ -77,8 +77,13 @@ fn findings(results: &Results) -> String {
     format!("{ended} {measured}")
 }
 
+/// A ratio with its interval; without one where all resampled ratios are the
+/// same, as they are for a single run or against oneself.
 fn interval(ratio: super::Ratio) -> String {
     let (low, high) = ratio.interval;
+    if high - low < 1e-9 {
+        return format!("{:.2}", ratio.ratio);
+    }
     format!("{:.2} ({low:.2}–{high:.2})", ratio.ratio)
 }
 
