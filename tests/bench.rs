@@ -15,8 +15,13 @@ fn close(left: f64, right: f64) -> bool {
 fn plan(targets: &[&str]) -> Plan {
     Plan {
         experiment: Experiment::Tomita,
-        targets: targets.iter().map(|name| Target::named(name).unwrap()).collect(),
-        contenders: ["bayes", "thesis"].map(|key| Contender::of(key).unwrap()).to_vec(),
+        targets: targets
+            .iter()
+            .map(|name| Target::named(name).unwrap())
+            .collect(),
+        contenders: ["bayes", "thesis"]
+            .map(|key| Contender::of(key).unwrap())
+            .to_vec(),
         costs: vec![Some(4), None],
         errors: vec![0],
         seed: 0,
@@ -83,7 +88,9 @@ fn summaries_are_as_counted_by_hand() {
 
     // Nobody ran without comparisons, and nobody beats itself.
     assert_eq!(results.against_base("bayes", None, Run::all_in), None);
-    let own = results.against_base("thesis", Some(4), Run::all_in).unwrap();
+    let own = results
+        .against_base("thesis", Some(4), Run::all_in)
+        .unwrap();
     assert!(close(own.ratio, 1.0) && close(own.interval.0, 1.0) && close(own.interval.1, 1.0));
 }
 
@@ -129,7 +136,10 @@ fn contenders_are_told_what_their_names_say() {
     }
     let robust = Contender::of("bayes-robust").unwrap();
     assert_eq!(robust.plain().unwrap().key, "bayes");
-    assert_eq!(Contender::of("thesis").unwrap().plain().unwrap().key, "thesis");
+    assert_eq!(
+        Contender::of("thesis").unwrap().plain().unwrap().key,
+        "thesis"
+    );
 }
 
 /// Drawn targets are minimal, of the promised shape, different, and the same
@@ -153,7 +163,10 @@ fn drawn_targets_have_their_shape() {
         sizes.insert((random.dfa().size(), random.dfa().alphabet().len()));
         let dfa = task.dfa();
         let sink = dfa.states().find(|&state| {
-            let mut next = dfa.alphabet().symbols().map(|symbol| dfa.next(state, symbol));
+            let mut next = dfa
+                .alphabet()
+                .symbols()
+                .map(|symbol| dfa.next(state, symbol));
             !dfa.is_accepting(state) && next.all(|next| next == state)
         });
         assert!(sink.is_some(), "{}", task.name());

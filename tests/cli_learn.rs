@@ -264,7 +264,7 @@ fn bad_input_is_told() {
         ("learn --target robot --max-states 0", "--max-states"),
         (
             "learn --target robot --strategy best",
-            "possible values: thesis, membership",
+            "possible values: bayes, thesis",
         ),
         (
             "learn --target robot --save no/such/folder.json",

@@ -75,10 +75,15 @@ fn by_cost(
 }
 
 fn costs(results: &Results, group: &Group) -> Panel {
-    by_cost(results, &group.name, "all-in cost, membership queries", |key, cost| {
-        let cell = results.cell(group, key, cost, 0);
-        mean(&cell, |run| run.all_in() / run.cost.map_or(1.0, f64::from))
-    })
+    by_cost(
+        results,
+        &group.name,
+        "all-in cost, membership queries",
+        |key, cost| {
+            let cell = results.cell(group, key, cost, 0);
+            mean(&cell, |run| run.all_in() / run.cost.map_or(1.0, f64::from))
+        },
+    )
 }
 
 fn mean(cell: &Cell<'_>, measure: Measure) -> Option<Point> {

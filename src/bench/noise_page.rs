@@ -23,11 +23,11 @@ pub(super) fn findings(results: &Results) -> String {
         .map(|contender| {
             let cell = results.cell(&all, contender.key, cost(results), worst);
             let share = cell.count(|run| run.equivalent) as f64 / cell.len() as f64;
-            format!("{} of those of `{}`", percent(share), name(contender.key))
+            format!("{} for `{}`", percent(share), name(contender.key))
         })
         .collect();
     format!(
-        "{ended} With {worst} % of the answers to membership queries and comparisons wrong, it was {}.",
+        "{ended} With {worst} % of the answers to membership queries and comparisons wrong, the share that did is {}.",
         shares.join(", ")
     )
 }

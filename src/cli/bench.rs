@@ -31,7 +31,7 @@ enum Command {
     /// The robot's task (Fig. 5.3, left).
     Robot(suite::Options),
     /// Wrong answers (Fig. 5.5).
-    Noise(suite::Options),
+    Noise(suite::NoiseOptions),
     /// Targets drawn at random: 3 to 8 states, 2 to 4 letters.
     Random(suite::DrawnOptions),
     /// Targets drawn at random in the shape of tasks.
@@ -43,11 +43,11 @@ enum Command {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.experiment {
-        Command::Tomita(options) => suite::run(Experiment::Tomita, options, None),
-        Command::Modulo(options) => suite::run(Experiment::Modulo, options, None),
-        Command::Zeros(options) => suite::run(Experiment::Zeros, options, None),
-        Command::Robot(options) => suite::run(Experiment::Robot, options, None),
-        Command::Noise(options) => suite::run(Experiment::Noise, options, None),
+        Command::Tomita(options) => suite::run_named(Experiment::Tomita, options),
+        Command::Modulo(options) => suite::run_named(Experiment::Modulo, options),
+        Command::Zeros(options) => suite::run_named(Experiment::Zeros, options),
+        Command::Robot(options) => suite::run_named(Experiment::Robot, options),
+        Command::Noise(options) => suite::run_noise(options),
         Command::Random(options) => suite::run_drawn(Experiment::Random, options),
         Command::Tasks(options) => suite::run_drawn(Experiment::Tasks, options),
         Command::Identify(args) => passive::run(args),

@@ -38,7 +38,8 @@ const BUDGET: u64 = 2_000_000;
 Targets: tomita:1 to tomita:7 (Tomita's languages over 0 and 1), tomita:3t (the
 third in the dissertation's three-state form), zeros:N (no run of more than N
 zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
-of the dissertation), or the path of an automaton file (json or dot).
+of the dissertation), random:N and task:N (drawn at random, as in `memrep bench
+random` and `tasks`), or the path of an automaton file (json or dot).
 
 Exit status: 0 if the target was learned, 1 if the questions ran out first, 2 if
 the arguments or a file are at fault.")]

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::builder::PossibleValuesParser;
 
 use super::Out;
@@ -46,6 +46,10 @@ pub(super) struct Options {
     /// Only these contenders; ratios need `thesis` among them.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(CONTENDERS.iter().map(|c| c.key)))]
     strategy: Vec<String>,
+    /// Only these costs of a membership query, where a comparison costs 1; `none`
+    /// is no cost but that comparisons are never asked.
+    #[arg(long, value_name = "C,…", value_delimiter = ',', value_parser = cost)]
+    costs: Vec<Cost>,
     /// The runs at a time: one a core, where nothing is said.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -54,6 +58,29 @@ pub(super) struct Options {
     aalpy: Option<PathBuf>,
     #[command(flatten)]
     out: Out,
+}
+
+/// A cost of a membership query; none where comparisons are never asked.
+#[derive(Clone, Copy, Debug)]
+struct Cost(Option<u32>);
+
+fn cost(text: &str) -> Result<Cost, String> {
+    match text.parse::<u32>() {
+        Ok(cost) if cost > 0 => Ok(Cost(Some(cost))),
+        _ if text == "none" => Ok(Cost(None)),
+        _ => Err("give whole numbers from 1, or `none`".to_owned()),
+    }
+}
+
+/// Options of the experiment on wrong answers.
+#[derive(Debug, clap::Args)]
+pub(super) struct NoiseOptions {
+    #[command(flatten)]
+    options: Options,
+    /// The shares of wrong answers, in percent; 0 is needed to compare with.
+    #[arg(long, value_name = "PERCENT,…", value_delimiter = ',', default_value = "0,2,5,10,20",
+          value_parser = clap::value_parser!(u32).range(0..=50))]
+    errors: Vec<u32>,
 }
 
 /// Options of the experiments whose targets are drawn.
@@ -68,21 +95,34 @@ pub(super) struct DrawnOptions {
 
 /// Runs an experiment with drawn targets.
 pub(super) fn run_drawn(experiment: Experiment, args: &DrawnOptions) -> anyhow::Result<ExitCode> {
-    run(experiment, &args.options, args.targets)
+    let targets = Experiment::drawn_targets(args.options.quick);
+    let targets = args.targets.unwrap_or(targets);
+    run(plan(experiment, &args.options, targets)?, &args.options)
+}
+
+/// Runs the experiment on wrong answers.
+pub(super) fn run_noise(args: &NoiseOptions) -> anyhow::Result<ExitCode> {
+    if args.options.aalpy.is_some() {
+        bail!("`--aalpy`: these rivals have no answer to wrong answers, leave it out");
+    }
+    if args.options.costs.len() > 1 {
+        bail!("`--costs`: this experiment has one cost, give one");
+    }
+    let mut plan = plan(Experiment::Noise, &args.options, 0)?;
+    plan.errors.clone_from(&args.errors);
+    plan.errors.sort_unstable();
+    plan.errors.dedup();
+    run(plan, &args.options)
+}
+
+/// Runs an experiment whose targets have names.
+pub(super) fn run_named(experiment: Experiment, options: &Options) -> anyhow::Result<ExitCode> {
+    run(plan(experiment, options, 0)?, options)
 }
 
 /// Runs an experiment and writes what came of it.
-pub(super) fn run(
-    experiment: Experiment,
-    options: &Options,
-    targets: Option<u64>,
-) -> anyhow::Result<ExitCode> {
-    if experiment == Experiment::Noise && options.aalpy.is_some() {
-        anyhow::bail!("`--aalpy`: these rivals have no answer to wrong answers, leave it out");
-    }
+fn run(plan: Plan, options: &Options) -> anyhow::Result<ExitCode> {
     options.out.prepare()?;
-    let targets = targets.unwrap_or(Experiment::drawn_targets(options.quick));
-    let plan = plan(experiment, options, targets)?;
     let threads = usize::from(options.threads.unwrap_or(0));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -108,7 +148,7 @@ pub(super) fn run(
         options
             .out
             .out
-            .join(format!("{}.{extension}", experiment.name()))
+            .join(format!("{}.{extension}", results.plan.experiment.name()))
     };
     files::write(&file("csv"), &bench::csv(&results)?)?;
     files::write(&file("svg"), &bench::figure(&results)?)?;
@@ -130,7 +170,7 @@ fn plan(experiment: Experiment, options: &Options, targets: u64) -> anyhow::Resu
     let contenders: Vec<_> = experiment.contenders().into_iter().filter(chosen).collect();
     if contenders.is_empty() {
         let keys: Vec<_> = experiment.contenders().iter().map(|c| c.key).collect();
-        anyhow::bail!(
+        bail!(
             "none of these contenders takes part in `{}`: give some of {} by `--strategy`",
             experiment.name(),
             keys.join(", ")
@@ -140,7 +180,11 @@ fn plan(experiment: Experiment, options: &Options, targets: u64) -> anyhow::Resu
         experiment,
         targets: experiment.targets(targets)?,
         contenders,
-        costs: experiment.costs(),
+        costs: if options.costs.is_empty() {
+            experiment.costs()
+        } else {
+            options.costs.iter().map(|cost| cost.0).collect()
+        },
         errors: experiment.errors(),
         seed: options.seed,
         trials: options.trials.unwrap_or(experiment.trials(options.quick)),
@@ -170,6 +214,15 @@ fn command(plan: &Plan, options: &Options) -> String {
         "counterexample",
         named(plan.counterexamples.to_possible_value()),
     );
+    if plan.experiment == Experiment::Noise {
+        let errors: Vec<_> = plan.errors.iter().map(u32::to_string).collect();
+        add("errors", errors.join(","));
+    }
+    if !options.costs.is_empty() {
+        let costs = plan.costs.iter();
+        let costs = costs.map(|cost| cost.map_or("none".to_owned(), |cost| cost.to_string()));
+        add("costs", costs.collect::<Vec<_>>().join(","));
+    }
     if !options.strategy.is_empty() {
         let keys: Vec<_> = plan
             .contenders
