@@ -98,12 +98,11 @@ fn tomita_is_the_same_for_the_same_seed() {
 
 #[test]
 fn bayes_takes_part() {
-    let arguments = "--targets 1 --trials 1 --costs 8 --strategy thesis,bayes,bayes-free";
+    let arguments = "--targets 1 --trials 1 --costs 8 --strategy thesis,bayes";
     let (lines, page) = check("random", arguments, 0);
-    assert_eq!(lines.len(), 1 + 3);
-    assert!(page.contains("bayes, equivalence free"));
+    assert_eq!(lines.len(), 1 + 2);
     assert!(
-        page.contains(" --costs 8 --strategy bayes,bayes-free,thesis`"),
+        page.contains(" --costs 8 --strategy bayes,thesis`"),
         "{page}"
     );
     assert!(

@@ -64,8 +64,8 @@ const FONT: &str = "sans-serif";
 /// The sizes of a chart, in pixels.
 const PANEL: (u32, u32) = (360, 270);
 const MOST_COLUMNS: usize = 3;
-const LEGEND_ROW: u32 = 22;
-const LEGEND_COLUMN: i32 = 200;
+const LEGEND_ROW: u16 = 22;
+const LEGEND_COLUMN: u16 = 200;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -88,8 +88,8 @@ pub(super) fn svg(panels: &[Panel]) -> Result<String, ChartError> {
         })
         .unwrap_or_default();
     let width = PANEL.0 * columns as u32;
-    let per_row = (width as usize / LEGEND_COLUMN as usize).max(1);
-    let legend = LEGEND_ROW * names.len().div_ceil(per_row) as u32 + 10;
+    let per_row = (width as usize / usize::from(LEGEND_COLUMN)).max(1);
+    let legend = u32::from(LEGEND_ROW) * names.len().div_ceil(per_row) as u32 + 10;
     let size = (width, legend + PANEL.1 * rows as u32);
     let mut text = String::new();
     draw(
@@ -120,9 +120,12 @@ fn draw(
     root.fill(&WHITE)?;
     let (top, rest) = root.split_vertically(legend);
     let style = (FONT, 14).into_font().color(&INK);
-    for (place, name) in names.iter().enumerate() {
-        let x = 16 + (place % per_row) as i32 * LEGEND_COLUMN;
-        let y = 8 + LEGEND_ROW as i32 / 2 + (place / per_row) as i32 * LEGEND_ROW as i32;
+    let (row, column) = (i32::from(LEGEND_ROW), i32::from(LEGEND_COLUMN));
+    let lines = names.chunks(per_row).zip(0..);
+    let places =
+        lines.flat_map(|(line, y)| line.iter().zip(0..).map(move |(name, x)| (name, x, y)));
+    for (place, (name, x, y)) in places.enumerate() {
+        let (x, y) = (16 + x * column, 8 + row / 2 + y * row);
         mark(&top, place, (x, y))?;
         let anchor = style.pos(Pos::new(HPos::Left, VPos::Center));
         top.draw(&Text::new((*name).to_owned(), (x + 12, y), anchor))?;
@@ -161,6 +164,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .chain(panel.line)
         .fold(0.0, f64::max);
     let top = if highest > 0.0 { 1.06 * highest } else { 1.0 };
+    let digits = usize::from(top < 5.0);
     let last = panel.ticks.len().max(1) as f64 - 0.5;
     let title = (FONT, 15).into_font().color(&INK);
     let mut chart = ChartBuilder::on(area)
@@ -176,6 +180,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .disable_x_mesh()
         .x_labels(0)
         .y_labels(6)
+        .y_label_formatter(&|value| format!("{value:.digits$}"))
         .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(225, 225, 225))
         .axis_style(RGBColor(140, 140, 140))
@@ -199,7 +204,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let anchor = small.pos(Pos::new(HPos::Center, VPos::Top));
     for (tick, name) in panel.ticks.iter().enumerate() {
         let (x, y) = at(tick as f64, 0.0);
-        pixels.draw(&Text::new(name.clone(), (x, y + 10), anchor.clone()))?;
+        pixels.draw(&Text::new(name.clone(), (x, y + 14), anchor.clone()))?;
     }
     // Side by side, so that bars do not hide each other.
     let step = 0.7 / panel.series.len().max(1) as f64;

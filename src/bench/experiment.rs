@@ -149,8 +149,7 @@ impl Experiment {
     /// The runs of a cell where nothing else is asked for.
     pub fn trials(self, quick: bool) -> u64 {
         match (self, quick) {
-            (Self::Random | Self::Tasks, true) => 1,
-            (Self::Robot, true) => 5,
+            (Self::Random | Self::Tasks | Self::Noise, true) => 1,
             (_, true) => 2,
             (Self::Random | Self::Tasks, false) => 5,
             (_, false) => 20,

@@ -5,6 +5,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use automata::{StateId, Symbol};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -111,7 +112,7 @@ fn table(target: &Target) -> serde_json::Value {
     let dfa = target.dfa();
     let states = || dfa.states();
     let known = target.known().iter().filter_map(|fact| match fact {
-        Fact::Label { atom, .. } => Some(atom.iter().map(|s| s.index()).collect::<Vec<_>>()),
+        Fact::Label { atom, .. } => Some(atom.iter().map(Symbol::index).collect::<Vec<_>>()),
         _ => None,
     });
     let row = |state| {
@@ -123,7 +124,7 @@ fn table(target: &Target) -> serde_json::Value {
     json!({
         "symbols": dfa.alphabet().len(),
         "start": dfa.start().index(),
-        "accepting": states().filter(|&q| dfa.is_accepting(q)).map(|q| q.index()).collect::<Vec<_>>(),
+        "accepting": states().filter(|&q| dfa.is_accepting(q)).map(StateId::index).collect::<Vec<_>>(),
         "delta": states().map(row).collect::<Vec<_>>(),
         "known": known.collect::<Vec<_>>(),
     })

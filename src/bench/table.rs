@@ -56,5 +56,6 @@ pub fn csv(results: &Results) -> Result<String, csv::Error> {
     let bytes = writer
         .into_inner()
         .map_err(|error| csv::Error::from(error.into_error()))?;
-    Ok(String::from_utf8(bytes).expect("every field is text"))
+    // Every field is text.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -28,8 +28,7 @@ impl Shape {
         let states: u32 = random.random_range(3..=8);
         let fewest: u32 = if self == Self::Task { 3 } else { 2 };
         let letters = random.random_range(fewest..=4) as usize;
-        let alphabet = Alphabet::new(LETTERS.into_iter().take(letters))
-            .expect("different letters are an alphabet");
+        let alphabet = alphabet(letters);
         let sink = states as usize - 1;
         minimal(&alphabet, states as usize, || {
             let mut edge = |from: usize| {
@@ -51,6 +50,11 @@ impl Shape {
             (rows, accepting)
         })
     }
+}
+
+/// The first letters, up to four.
+fn alphabet(letters: usize) -> Alphabet {
+    Alphabet::new(LETTERS.into_iter().take(letters)).expect("different letters are an alphabet")
 }
 
 /// The first table drawn that is a minimal automaton of so many states: where to

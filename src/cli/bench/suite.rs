@@ -53,7 +53,7 @@ pub(super) struct Options {
     /// The runs at a time: one a core, where nothing is said.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// A Python that has AALpy, to run L*, KV and L# on the same targets.
+    /// A Python that has `AALpy`, to run L*, KV and L# on the same targets.
     #[arg(long, value_name = "PYTHON")]
     aalpy: Option<PathBuf>,
     #[command(flatten)]
@@ -195,11 +195,13 @@ fn plan(experiment: Experiment, options: &Options, targets: u64) -> anyhow::Resu
 
 /// The command that does the same again, without what decides nothing.
 fn command(plan: &Plan, options: &Options) -> String {
+    use std::fmt::Write as _;
+
     use clap::ValueEnum as _;
 
     let mut command = format!("memrep bench {}", plan.experiment.name());
     let mut add = |name: &str, value: String| {
-        command.push_str(&format!(" --{name} {value}"));
+        let _ = write!(command, " --{name} {value}");
     };
     if plan.experiment.drawn().is_some() {
         add("targets", plan.targets.len().to_string());
