@@ -158,7 +158,7 @@ impl Experiment {
 
     /// The number of drawn targets where nothing else is asked for.
     pub fn drawn_targets(quick: bool) -> u64 {
-        if quick { 6 } else { 30 }
+        if quick { 3 } else { 30 }
     }
 }
 
