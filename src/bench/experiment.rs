@@ -31,6 +31,7 @@ const NOISE_COST: u32 = 4;
 
 /// The shares of wrong answers in [`Experiment::Noise`], in percent.
 const ERRORS: [u32; 5] = [0, 2, 5, 10, 20];
+const QUICK_ERRORS: [u32; 2] = [0, 5];
 
 impl Experiment {
     /// Its name, and that of its files.
@@ -139,8 +140,9 @@ impl Experiment {
     }
 
     /// The shares of wrong answers, in percent.
-    pub fn errors(self) -> Vec<u32> {
+    pub fn errors(self, quick: bool) -> Vec<u32> {
         match self {
+            Self::Noise if quick => QUICK_ERRORS.to_vec(),
             Self::Noise => ERRORS.to_vec(),
             _ => vec![0],
         }

@@ -77,8 +77,9 @@ fn cost(text: &str) -> Result<Cost, String> {
 pub(super) struct NoiseOptions {
     #[command(flatten)]
     options: Options,
-    /// The shares of wrong answers, in percent; 0 is needed to compare with.
-    #[arg(long, value_name = "PERCENT,…", value_delimiter = ',', default_value = "0,2,5,10,20",
+    /// The shares of wrong answers, in percent: 0,2,5,10,20 where nothing is
+    /// said; without 0 there is nothing to compare with.
+    #[arg(long, value_name = "PERCENT,…", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(0..=50))]
     errors: Vec<u32>,
 }
@@ -109,7 +110,9 @@ pub(super) fn run_noise(args: &NoiseOptions) -> anyhow::Result<ExitCode> {
         bail!("`--costs`: this experiment has one cost, give one");
     }
     let mut plan = plan(Experiment::Noise, &args.options, 0)?;
-    plan.errors.clone_from(&args.errors);
+    if !args.errors.is_empty() {
+        plan.errors.clone_from(&args.errors);
+    }
     plan.errors.sort_unstable();
     plan.errors.dedup();
     run(plan, &args.options)
@@ -185,7 +188,7 @@ fn plan(experiment: Experiment, options: &Options, targets: u64) -> anyhow::Resu
         } else {
             options.costs.iter().map(|cost| cost.0).collect()
         },
-        errors: experiment.errors(),
+        errors: experiment.errors(options.quick),
         seed: options.seed,
         trials: options.trials.unwrap_or(experiment.trials(options.quick)),
         order: options.teacher.unwrap_or(experiment.order()),
