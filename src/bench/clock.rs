@@ -7,10 +7,20 @@ use std::time::Duration;
 /// engine may search on a thread of its own).
 #[cfg(unix)]
 pub fn process_cpu() -> Duration {
-    use rustix::time::{ClockId, clock_gettime};
+    read(rustix::time::ClockId::ProcessCPUTime)
+}
 
-    let time = clock_gettime(ClockId::ProcessCPUTime);
-    // Both parts of a process's clock are never negative.
+/// The CPU time that the calling thread has used so far, for runs that go on side
+/// by side. What an engine does on a thread of its own is not in it.
+#[cfg(unix)]
+pub fn thread_cpu() -> Duration {
+    read(rustix::time::ClockId::ThreadCPUTime)
+}
+
+#[cfg(unix)]
+fn read(clock: rustix::time::ClockId) -> Duration {
+    let time = rustix::time::clock_gettime(clock);
+    // Both parts of a clock of CPU time are never negative.
     Duration::new(
         u64::try_from(time.tv_sec).unwrap_or(0),
         u32::try_from(time.tv_nsec).unwrap_or(0),
@@ -26,4 +36,10 @@ pub fn process_cpu() -> Duration {
 
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed()
+}
+
+/// The time on the wall, as [`process_cpu`] has it there.
+#[cfg(not(unix))]
+pub fn thread_cpu() -> Duration {
+    process_cpu()
 }

@@ -1,12 +1,38 @@
-//! Scripted teaching runs and the tables made of them.
+//! Scripted teaching runs, and the tables and figures made of them: chapter 5's
+//! experiments, and drawn targets.
+//!
+//! An [`Experiment`] with its [`Plan`] says what is run, [`run`] does it, and
+//! [`Results`] are told by a page, a table for programs and a figure.
 
+mod beside;
+mod chart;
 mod clock;
+mod contender;
+mod experiment;
+mod figure;
+mod markdown;
+mod noise_page;
+mod page;
 pub mod passive;
 pub mod passive_page;
 mod published;
-pub mod thesis;
-pub mod thesis_page;
+mod results;
+mod rivals;
+mod run;
+mod summary;
+mod table;
+mod times;
 mod trial;
 
-pub use clock::process_cpu;
+pub use chart::ChartError;
+pub use clock::{process_cpu, thread_cpu};
+pub use contender::{BASE, CONTENDERS, Contender, KV, RIVALS, Rival};
+pub use experiment::{COSTS, Experiment, Plan};
+pub use figure::figure;
+pub use page::markdown;
+pub use results::{Cell, Group, Measure, Results};
+pub use rivals::{RivalsError, run as run_rivals};
+pub use run::{Run, RunError, run, size};
+pub use summary::{Pairs, Ratio, Spread, Uncertainty, ratio, spread};
+pub use table::csv;
 pub use trial::{Asked, Dropped, Report, TrialError, percentile, teach};

@@ -16,6 +16,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wait4::Wait4;
 
+use crate::oracle::minimal;
+
 /// What `dfa-identify` is run as: `python -c THIS sample.abb SECONDS`. It prints
 /// the number of states of what it found, without a sink that it left out, and
 /// ends itself after so much CPU time.
@@ -80,21 +82,15 @@ pub fn most_words(states: usize) -> usize {
 /// A minimal automaton of this size, evenly drawn.
 fn random_target(alphabet: &Alphabet, states: usize, random: &mut ChaCha8Rng) -> Dfa {
     let top = u32::try_from(states).expect("a target has few states");
-    loop {
-        let rows: Vec<Vec<usize>> = (0..states)
+    minimal(alphabet, states, || {
+        let rows = (0..states)
             .map(|_| {
                 let next = |_| random.random_range(0..top) as usize;
                 (0..alphabet.len()).map(next).collect()
             })
             .collect();
-        let accepting = (0..states).map(|_| random.random()).collect();
-        let dfa = Dfa::new(alphabet.clone(), 0, accepting, &rows)
-            .expect("every entry of the table was drawn among its states");
-        let minimal = dfa.minimise();
-        if minimal.size() == states {
-            return minimal;
-        }
-    }
+        (rows, (0..states).map(|_| random.random()).collect())
+    })
 }
 
 /// What a process came to.

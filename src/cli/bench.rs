@@ -1,7 +1,7 @@
 //! `memrep bench`: runs an experiment and writes its tables.
 
 mod passive;
-mod thesis;
+mod suite;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,18 +10,32 @@ use anyhow::Context as _;
 use clap::Subcommand;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::bench::Experiment;
+
 /// Arguments of `memrep bench`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// What to run.
     #[command(subcommand)]
-    experiment: Experiment,
+    experiment: Command,
 }
 
 #[derive(Debug, Subcommand)]
-enum Experiment {
-    /// Chapter 5's targets at all costs: thesis.md and thesis.csv.
-    Thesis(thesis::Args),
+enum Command {
+    /// Tomita's seven languages (Tables 5.1 to 5.3, Fig. 5.4).
+    Tomita(suite::Options),
+    /// Lengths divisible by a number (Table 5.4).
+    Modulo(suite::Options),
+    /// Tomita's fourth language, generalised (Table 5.5).
+    Zeros(suite::Options),
+    /// The robot's task (Fig. 5.3, left).
+    Robot(suite::Options),
+    /// Wrong answers (Fig. 5.5).
+    Noise(suite::NoiseOptions),
+    /// Targets drawn at random: 3 to 8 states, 2 to 4 letters.
+    Random(suite::DrawnOptions),
+    /// Targets drawn at random in the shape of tasks.
+    Tasks(suite::DrawnOptions),
     /// Smallest automata for random samples, beside dfa-identify: identify.md.
     Identify(passive::Args),
 }
@@ -29,8 +43,14 @@ enum Experiment {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.experiment {
-        Experiment::Thesis(args) => thesis::run(args),
-        Experiment::Identify(args) => passive::run(args),
+        Command::Tomita(options) => suite::run_named(Experiment::Tomita, options),
+        Command::Modulo(options) => suite::run_named(Experiment::Modulo, options),
+        Command::Zeros(options) => suite::run_named(Experiment::Zeros, options),
+        Command::Robot(options) => suite::run_named(Experiment::Robot, options),
+        Command::Noise(options) => suite::run_noise(options),
+        Command::Random(options) => suite::run_drawn(Experiment::Random, options),
+        Command::Tasks(options) => suite::run_drawn(Experiment::Tasks, options),
+        Command::Identify(args) => passive::run(args),
     }
 }
 
@@ -58,8 +78,9 @@ fn bar(runs: u64) -> ProgressBar {
     ProgressBar::new(runs).with_style(style)
 }
 
-/// What can be told of the machine without asking it much.
-fn machine() -> String {
+/// What can be told of the machine without asking it much, and how many of its
+/// cores are used.
+fn machine(used: usize) -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let build = if cfg!(debug_assertions) {
         "a debug build"
@@ -67,5 +88,5 @@ fn machine() -> String {
         "a release build"
     };
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
-    format!("{build} on {os} {arch}, {cores} cores, of which one is used")
+    format!("{build} on {os} {arch}, {cores} cores, {used} of them used")
 }

@@ -42,7 +42,8 @@ const BUDGET: u64 = 2_000_000;
 Targets: tomita:1 to tomita:7 (Tomita's languages over 0 and 1), tomita:3t (the
 third in the dissertation's three-state form), zeros:N (no run of more than N
 zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
-of the dissertation), or the path of an automaton file (json or dot).
+of the dissertation), random:N and task:N (drawn at random, as in `memrep bench
+random` and `tasks`), or the path of an automaton file (json or dot).
 
 With --conformance, what the teacher agreed with is believed only after random
 words were judged: the line `checked` says how far one may trust it. Of a teacher that

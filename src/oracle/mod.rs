@@ -4,11 +4,14 @@
 //! know learners.
 
 mod counterexample;
+mod drawn;
 mod order;
 mod scripted;
 mod target;
 
 pub use counterexample::Counterexamples;
+pub use drawn::Shape;
+pub(crate) use drawn::minimal;
 pub use order::{Order, PreferenceOrder};
 pub use scripted::{ScriptedTeacher, TeacherSettings};
 pub use target::{Target, TargetError};

@@ -3,6 +3,7 @@
 
 use automata::{Alphabet, Dfa, StateId, Word};
 
+use super::drawn::Shape;
 use crate::evidence::Fact;
 
 /// A language to be taught, with what a learner is told of it at the start.
@@ -18,7 +19,7 @@ pub struct Target {
 pub enum TargetError {
     /// No target is called so.
     #[error(
-        "there is no target `{0}`: give tomita:1 to tomita:7, tomita:3t, modulo:K, zeros:N, robot, or the path of an automaton file"
+        "there is no target `{0}`: give tomita:1 to tomita:7, tomita:3t, modulo:K, zeros:N, robot, random:N, task:N, or the path of an automaton file"
     )]
     Unknown(String),
     /// The number after the colon does not fit.
@@ -60,6 +61,19 @@ impl Target {
                 let n = number(n, 0).ok_or_else(|| parameter("give a number from 0 to 1000"))?;
                 (zeros(n), None)
             }
+            Some((shape @ ("random" | "task"), n)) => {
+                let n = n
+                    .parse()
+                    .map_err(|_| parameter("give the number of a drawn target, from 0"))?;
+                return Ok(Self::drawn(
+                    if shape == "task" {
+                        Shape::Task
+                    } else {
+                        Shape::Random
+                    },
+                    n,
+                ));
+            }
             None if name == "robot" => {
                 let robot = robot();
                 let known = robot_known(robot.alphabet());
@@ -80,6 +94,16 @@ impl Target {
             dfa: dfa.minimise(),
             known,
         })
+    }
+
+    /// The drawn target of this shape and number, of which nothing is known at
+    /// the start.
+    pub fn drawn(shape: Shape, number: u64) -> Self {
+        let name = match shape {
+            Shape::Random => "random",
+            Shape::Task => "task",
+        };
+        Self::automaton(format!("{name}:{number}"), &shape.draw(number))
     }
 
     /// The language of an automaton, of which nothing is known at the start.

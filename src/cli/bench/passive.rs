@@ -83,7 +83,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     progress.finish_and_clear();
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
     let command = format!("memrep {command}");
-    let page = passive_page::markdown(&rows, &command, limit, &super::machine());
+    let page = passive_page::markdown(&rows, &command, limit, &super::machine(1));
     let path = args.out.out.join("identify.md");
     files::write(&path, &page)?;
     let solved = |row: &&Row| matches!(row.ours.first(), Some(Outcome::Done { .. }));

@@ -1,0 +1,132 @@
+//! L*, KV and L# of the Python library `AALpy` on the same targets, as rivals
+//! that ask no comparisons.
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use automata::{StateId, Symbol};
+use serde::Deserialize;
+use serde_json::json;
+
+use super::contender::RIVALS;
+use super::experiment::Plan;
+use super::run::Run;
+use crate::evidence::Fact;
+use crate::learner::Counts;
+use crate::oracle::{Counterexamples, Target};
+
+/// What Python runs; it tells its input and output itself.
+const SCRIPT: &str = include_str!("rivals.py");
+
+/// Why there are no rivals.
+#[derive(Debug, thiserror::Error)]
+pub enum RivalsError {
+    /// Python cannot be started or talked to.
+    #[error("cannot run this Python: {0}")]
+    Start(#[from] std::io::Error),
+    /// It ended badly.
+    #[error("it complained: {0} (the rivals need AALpy: `pip install aalpy==2.0.0`)")]
+    Complaint(String),
+    /// What it printed is not what was expected.
+    #[error("it printed something that was not understood: {0}")]
+    Output(#[from] serde_json::Error),
+}
+
+#[derive(Deserialize)]
+struct Line {
+    target: usize,
+    rival: String,
+    seed: u64,
+    membership: u32,
+    equivalence: u32,
+}
+
+/// The rivals' runs with the plan's targets, seeds and counterexamples, repeated
+/// for every cost, as they look at none. Their teacher compares automata
+/// exactly, so all end equivalent. Of random counterexamples theirs are drawn
+/// from the same distribution, but they are not the same words.
+///
+/// # Errors
+///
+/// If Python or the library is missing, or fails.
+pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
+    let task = json!({
+        "counterexamples": match plan.counterexamples {
+            Counterexamples::Shortest => "shortest",
+            Counterexamples::Random => "random",
+        },
+        "seeds": plan.seeds().collect::<Vec<_>>(),
+        "targets": plan.targets.iter().map(table).collect::<Vec<_>>(),
+    });
+    let mut child = Command::new(python)
+        .args(["-c", SCRIPT])
+        // The order of Python's sets must not depend on the run.
+        .env("PYTHONHASHSEED", "0")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    if let Some(mut input) = child.stdin.take() {
+        // It may have died at once; its complaint says why.
+        let _ = input.write_all(task.to_string().as_bytes());
+    }
+    let output = child.wait_with_output()?;
+    if !output.status.success() {
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        let last = complaint.lines().last().unwrap_or("no reason given");
+        return Err(RivalsError::Complaint(last.trim().to_owned()));
+    }
+    let lines = String::from_utf8_lossy(&output.stdout);
+    let lines: Vec<Line> = lines
+        .lines()
+        .map(serde_json::from_str)
+        .collect::<Result<_, _>>()?;
+    let at_cost = |&cost: &Option<u32>| {
+        let known = |line: &Line| {
+            let rival = RIVALS.iter().find(|rival| rival.key == line.rival)?;
+            Some(Run {
+                target: line.target,
+                contender: rival.key,
+                cost,
+                errors: 0,
+                seed: line.seed,
+                equivalent: true,
+                counts: Counts {
+                    membership: line.membership,
+                    comparison: 0,
+                    equivalence: line.equivalence,
+                    conformance: 0,
+                },
+                dropped: 0,
+                hurried: 0,
+                question_times: Vec::new(),
+            })
+        };
+        lines.iter().filter_map(known).collect::<Vec<_>>()
+    };
+    Ok(plan.costs.iter().flat_map(at_cost).collect())
+}
+
+/// A target for the script.
+fn table(target: &Target) -> serde_json::Value {
+    let dfa = target.dfa();
+    let states = || dfa.states();
+    let known = target.known().iter().filter_map(|fact| match fact {
+        Fact::Label { atom, .. } => Some(atom.iter().map(Symbol::index).collect::<Vec<_>>()),
+        _ => None,
+    });
+    let row = |state| {
+        let symbols = dfa.alphabet().symbols();
+        symbols
+            .map(|symbol| dfa.next(state, symbol).index())
+            .collect::<Vec<_>>()
+    };
+    json!({
+        "symbols": dfa.alphabet().len(),
+        "start": dfa.start().index(),
+        "accepting": states().filter(|&q| dfa.is_accepting(q)).map(StateId::index).collect::<Vec<_>>(),
+        "delta": states().map(row).collect::<Vec<_>>(),
+        "known": known.collect::<Vec<_>>(),
+    })
+}

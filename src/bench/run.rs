@@ -1,0 +1,194 @@
+//! Does what a plan says: one scripted run after the other, on all cores.
+
+use std::time::Duration;
+
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
+use super::clock::thread_cpu;
+use super::contender::Contender;
+use super::experiment::Plan;
+use super::trial::{TrialError, teach};
+use crate::concept::DfaClass;
+use crate::identify::{EngineChoice, Settings};
+use crate::learner::{Counts, EQUIVALENCE_COST, Learner};
+use crate::oracle::{ScriptedTeacher, TeacherSettings};
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The target's place in the plan.
+    pub target: usize,
+    /// The key of the contender or rival.
+    pub contender: &'static str,
+    /// The cost of a membership query; none where comparisons are never asked.
+    pub cost: Option<u32>,
+    /// The share of wrong answers, in percent.
+    pub errors: u32,
+    /// The seed of learner and teacher.
+    pub seed: u64,
+    /// Whether what was learned is the target.
+    pub equivalent: bool,
+    /// The questions asked.
+    pub counts: Counts,
+    /// The answers that were dropped.
+    pub dropped: u32,
+    /// The questions for which the budget ended.
+    pub hurried: u32,
+    /// CPU time of choosing each question; none for rivals.
+    pub question_times: Vec<Duration>,
+}
+
+impl Run {
+    /// The dissertation's cost (Eq. 5.2), where equivalence queries are free:
+    /// `C·memberships + comparisons`.
+    pub fn paid(&self) -> f64 {
+        self.weight() * f64::from(self.counts.membership) + f64::from(self.counts.comparison)
+    }
+
+    /// The all-in cost: the same and `4C` for every equivalence query.
+    pub fn all_in(&self) -> f64 {
+        self.paid() + EQUIVALENCE_COST * self.weight() * f64::from(self.counts.equivalence)
+    }
+
+    /// All questions.
+    pub fn questions(&self) -> f64 {
+        let Counts {
+            membership,
+            comparison,
+            equivalence,
+            conformance,
+        } = self.counts;
+        f64::from(membership + comparison + equivalence + conformance)
+    }
+
+    fn weight(&self) -> f64 {
+        self.cost.map_or(1.0, f64::from)
+    }
+}
+
+/// A run that could not go on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("target {target}, {contender}, seed {seed}: {source}")]
+pub struct RunError {
+    target: String,
+    contender: &'static str,
+    seed: u64,
+    source: TrialError,
+}
+
+/// More questions than any run should need.
+const MAX_QUESTIONS: u32 = 500;
+
+/// The largest automata considered. Wrong answers look like further states, so
+/// where there are some, a bound not far above the targets' sizes finds them out.
+const MAX_STATES: usize = 64;
+const MAX_STATES_NOISY: usize = 8;
+
+/// The order of the work, which decides nothing but how well it spreads.
+const SHUFFLE: u64 = 0;
+
+struct Job {
+    target: usize,
+    contender: &'static Contender,
+    cost: Option<u32>,
+    errors: u32,
+    seed: u64,
+}
+
+fn jobs(plan: &Plan) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for target in 0..plan.targets.len() {
+        for &cost in &plan.costs {
+            for &errors in &plan.errors {
+                for &contender in &plan.contenders {
+                    jobs.extend(plan.seeds().map(|seed| Job {
+                        target,
+                        contender,
+                        cost,
+                        errors,
+                        seed,
+                    }));
+                }
+            }
+        }
+    }
+    jobs
+}
+
+/// How many runs the plan has.
+pub fn size(plan: &Plan) -> u64 {
+    jobs(plan).len() as u64
+}
+
+/// Runs everything, on the current thread pool; `done` hears of every run, in any
+/// order. The runs come back in the order of the plan.
+///
+/// # Errors
+///
+/// If a run cannot go on.
+pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError> {
+    let mut jobs: Vec<(usize, Job)> = jobs(plan).into_iter().enumerate().collect();
+    // Neighbours are alike: mixed, every core has its share of the long ones
+    // and the estimate of the time left is soon right.
+    jobs.shuffle(&mut ChaCha8Rng::seed_from_u64(SHUFFLE));
+    let mut runs = jobs
+        .par_iter()
+        .map(|(place, job)| {
+            let run = one(plan, job)?;
+            done(&run);
+            Ok((*place, run))
+        })
+        .collect::<Result<Vec<_>, RunError>>()?;
+    runs.sort_by_key(|&(place, _)| place);
+    Ok(runs.into_iter().map(|(_, run)| run).collect())
+}
+
+fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
+    let target = &plan.targets[job.target];
+    let noisy = plan.errors.iter().any(|&errors| errors > 0);
+    let settings = Settings {
+        engine: EngineChoice::Auto,
+        max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
+    };
+    let class = DfaClass::new(target.dfa().alphabet().clone(), settings);
+    let config = job.contender.config(job.cost, job.seed);
+    let mut learner = Learner::new(class, config, target.known().to_vec());
+    let settings = TeacherSettings {
+        order: plan.order,
+        counterexamples: plan.counterexamples,
+        error_rate: f64::from(job.errors) / 100.0,
+        seed: job.seed,
+    };
+    let mut teacher = ScriptedTeacher::new(target, settings);
+    let report = teach(
+        &mut learner,
+        &mut teacher,
+        MAX_QUESTIONS,
+        thread_cpu,
+        |_| {},
+    )
+    .map_err(|source| RunError {
+        target: target.name().to_owned(),
+        contender: job.contender.key,
+        seed: job.seed,
+        source,
+    })?;
+    let equivalent = report
+        .learned
+        .is_some_and(|learned| learned.is_equivalent(target.dfa()) == Ok(true));
+    Ok(Run {
+        target: job.target,
+        contender: job.contender.key,
+        cost: job.cost,
+        errors: job.errors,
+        seed: job.seed,
+        equivalent,
+        counts: report.counts,
+        dropped: report.dropped,
+        hurried: report.hurried,
+        question_times: report.question_times,
+    })
+}
