@@ -43,7 +43,7 @@ fn learns_and_tells() {
     let summary = summary(&outcome);
     assert_eq!(outcome.stdout.lines().count(), 1);
     assert_eq!(summary["target"], "tomita:4");
-    assert_eq!(summary["strategy"], "thesis");
+    assert_eq!(summary["strategy"], "bayes");
     assert_eq!(summary["seed"], 7);
     assert_eq!(summary["equivalent"], true);
     assert_eq!(summary["states"], 4);

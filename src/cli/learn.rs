@@ -37,7 +37,7 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target tomita:7 --error-rate 0.1 --strategy bayes --robust
   memrep learn --target task.json --membership-cost 8 --save learned.json
   memrep learn --target tomita:5 --comparison-cost inf --format json
-    {\"target\":\"tomita:5\",\"strategy\":\"thesis\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
+    {\"target\":\"tomita:5\",\"strategy\":\"bayes\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
 
 Targets: tomita:1 to tomita:7 (Tomita's languages over 0 and 1), tomita:3t (the
 third in the dissertation's three-state form), zeros:N (no run of more than N
@@ -235,7 +235,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         conformance: args.conformance,
         seed: args.seed,
         budget: BUDGET,
-        ..Config::default()
     };
     let class = DfaClass::new(alphabet.clone(), settings);
     let mut learner = Learner::new(class, config, target.known().to_vec());

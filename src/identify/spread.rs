@@ -186,12 +186,11 @@ pub(crate) fn is_minimal((delta, output): &Table) -> bool {
                             == block[delta[state * symbols + symbol] as usize]
                     })
             };
-            next[state] = match (0..state).find(same) {
-                Some(other) => next[other],
-                None => {
-                    count += 1;
-                    count - 1
-                }
+            next[state] = if let Some(other) = (0..state).find(same) {
+                next[other]
+            } else {
+                count += 1;
+                count - 1
             };
         }
         if count as usize == states {

@@ -33,7 +33,7 @@ pub const KEYS: [&str; 4] = ["membership_cost", "comparison_cost", "strategy", "
 impl Default for Setup {
     fn default() -> Self {
         Self {
-            strategy: Strategy::Thesis,
+            strategy: Strategy::Bayes,
             membership_cost: 4.0,
             comparison_cost: 1.0,
             seed: 0,

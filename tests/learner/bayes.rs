@@ -5,7 +5,7 @@ use memrep::bench::{process_cpu, teach};
 use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteConcept};
 use memrep::evidence::AnswerId;
 use memrep::identify::{EngineChoice, Settings};
-use memrep::learner::{Config, Learner, Question, Reply, Step, Strategy};
+use memrep::learner::{Config, Entry, Learner, Question, Reply, Step, Strategy};
 use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
 use proptest::prelude::*;
 
@@ -95,12 +95,13 @@ proptest! {
         let config = Config { membership_cost, ..config(Strategy::Bayes, seed) };
         let mut learner = Learner::new(class.clone(), config, Vec::new());
         let mut facts = Vec::new();
+        let mut learned = None;
         for number in 0..100 {
             let (question, round) = match learner.next() {
                 Step::Ask { question, round, .. } => (question, round),
                 Step::Done { hypothesis } => {
-                    prop_assert_eq!(hypothesis, target);
-                    return Ok(());
+                    learned = Some(hypothesis);
+                    break;
                 }
                 Step::Conflict(conflict) => panic!("{conflict:?} of {facts:?}"),
             };
@@ -114,9 +115,9 @@ proptest! {
             }
             let reply = reply(&class, target, order, &question);
             learner.record(AnswerId(number), question, round, reply).expect("it fits");
-            facts.extend(learner.entries().last().and_then(|entry| entry.fact()));
+            facts.extend(learner.entries().last().and_then(Entry::fact));
         }
-        return Err(TestCaseError::fail(format!("not learned after 100 questions: {facts:?}")));
+        prop_assert_eq!(learned, Some(target), "{:?}", facts);
     }
 }
 

@@ -67,7 +67,7 @@ type Places = Vec<[(Vec<u8>, Vec<bool>); LEVELS.len()]>;
 impl Particles {
     /// Chains that heard nothing.
     pub(crate) fn new(symbols: usize, most: usize, decay: f64, seed: u64) -> Self {
-        let trivial = |number: usize| (vec![0; symbols], vec![number % 2 == 0]);
+        let trivial = |number: usize| (vec![0; symbols], vec![number.is_multiple_of(2)]);
         let start = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
         Self {
             symbols,
@@ -106,6 +106,7 @@ impl Particles {
             // What was met after the last common answer is not kept: it is heard
             // once more.
             common = common.saturating_sub(1);
+            self.met.clear();
             self.heard.truncate(common);
             self.past.truncate(common + 1);
             self.script = Script::new(self.symbols);
@@ -142,6 +143,8 @@ impl Particles {
         let chains = LADDERS * LEVELS.len();
         let states = states as f64 / chains as f64;
         let moves = MOVES as f64 * (states / SMALL).powi(3).clamp(1.0, MOST);
+        // At most a few hundred thousand, and never negative.
+        #[expect(clippy::cast_sign_loss, reason = "the number of moves is positive")]
         let legs = moves as usize / chains / LEG;
         let mut mover = Mover::default();
         for ladder in &mut machines {
@@ -205,7 +208,8 @@ fn migrate(machines: &mut [[Machine; LEVELS.len()]]) {
     if let (Some(best), Some(worst)) = (best, worst)
         && chance(&machines[best]) - chance(&machines[worst]) > HOPELESS
     {
-        machines[worst] = machines[best].clone();
+        let best = machines[best].clone();
+        machines[worst] = best;
     }
 }
 

@@ -116,3 +116,35 @@ fn transitive_share(smaller: &[f64], symbols: usize) -> f64 {
     }
     share
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The chances of all numbered tables that use every state, with all outputs,
+    /// sum to the share of their size.
+    #[test]
+    fn tables_sum_to_the_share_of_their_size() {
+        for (states, symbols, share) in [(1, 2, TRIVIAL), (2, 3, 1.0), (3, 2, 1.0), (4, 1, 0.5)] {
+            let shape = Shape::new(symbols, 5, 0.5);
+            let edges = states * symbols;
+            let mut sum = 0.0;
+            for code in 0..states.pow(edges as u32) {
+                let delta: Vec<u8> = (0..edges as u32)
+                    .map(|edge| (code / states.pow(edge) % states) as u8)
+                    .collect();
+                let mut reached = vec![false; states];
+                reached[0] = true;
+                for _ in 0..states {
+                    for (edge, &target) in delta.iter().enumerate() {
+                        reached[usize::from(target)] |= reached[edge / symbols];
+                    }
+                }
+                if reached.iter().all(|reached| *reached) {
+                    sum += shape.log_prior(&delta, states).exp() * 2_f64.powf(states as f64);
+                }
+            }
+            assert!((sum - share).abs() < 1e-9, "{states} states: {sum}");
+        }
+    }
+}

@@ -118,6 +118,8 @@ fn thin(weights: &[f64], random: &mut ChaCha8Rng) -> (Vec<usize>, Vec<f64>) {
         }
     }
     let sum: f64 = kept.iter().sum();
-    kept.iter_mut().for_each(|weight| *weight /= sum);
+    for weight in &mut kept {
+        *weight /= sum;
+    }
     (chosen, kept)
 }

@@ -27,14 +27,20 @@ const REPEATED: f64 = 0.7;
 /// Less information than this is none.
 const NOTHING: f64 = 1e-9;
 
+/// A question, and what it is worth.
+type Best<C> = (
+    Question<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
+    Worth,
+);
+
 /// The question that is worth most for its cost, if any is worth something.
 pub(super) fn best<C: ConceptClass>(
     learner: &Learner<C>,
     table: &Table<C::Atom>,
     wrong: f64,
-) -> Option<(Question<C::Atom, C::Concept>, Worth)> {
+) -> Option<Best<C>> {
     let config = &learner.config;
-    let mut best: Option<(Question<C::Atom, C::Concept>, Worth)> = None;
+    let mut best: Option<Best<C>> = None;
     let beats = |best: &Option<(_, Worth)>, worth: Worth| {
         worth.bits > NOTHING
             && best
