@@ -7,7 +7,9 @@
 
 mod bayes;
 mod choose;
+mod config;
 mod conformance;
+mod dialogue;
 mod exp4;
 mod experts;
 mod known;
@@ -15,236 +17,16 @@ mod selection;
 
 use std::hash::Hash;
 
-use serde::{Deserialize, Serialize};
-
 pub use self::bayes::{Doubt, Doubts};
+pub use self::config::{Config, EQUIVALENCE_COST, Strategy};
 use self::conformance::Check;
 pub use self::conformance::{BATCH, Claim, Conformance, ConformanceError, Progress};
+pub use self::dialogue::{Counts, Entry, Question, Reply, ReplyError, Step};
 use self::experts::Bandit;
 pub use self::experts::{Losses, Round};
 use self::known::Known;
-use crate::concept::{ConceptClass, Contradiction};
-use crate::evidence::{AnswerId, Comparison, Fact};
-
-/// How questions are chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Strategy {
-    /// A posterior over concepts of several sizes, and the question that is
-    /// worth most for its cost.
-    Bayes,
-    /// Algorithms 4 to 6 as written.
-    Thesis,
-    /// The same without comparisons.
-    Membership,
-}
-
-/// What a learner is told once, at its start.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Config {
-    /// How questions are chosen.
-    pub strategy: Strategy,
-    /// The cost `a` of a membership query (Eq. 5.2), positive and finite.
-    pub membership_cost: f64,
-    /// The cost `b` of a comparison (Eq. 5.2), positive; infinite: never asked.
-    pub comparison_cost: f64,
-    /// The cost of an equivalence query, zero or more and finite. Only
-    /// [`Strategy::Bayes`] weighs it; the others ask when one concept is left.
-    pub equivalence_cost: f64,
-    /// Whether the teacher promises that no counterexample could be shorter, so
-    /// that every simpler atom has the label that the hypothesis gives it.
-    pub shortest_counterexamples: bool,
-    /// Whether answers may be wrong, so that they are evidence and no facts.
-    pub robust: bool,
-    /// What is to be claimed at the end; none: the teacher's agreement is enough.
-    #[serde(default)]
-    pub conformance: Option<Conformance>,
-    /// Decides every random choice.
-    pub seed: u64,
-    /// The work that choosing one question may do.
-    pub budget: u64,
-}
-
-/// An equivalence query costs as much as so many membership queries, where
-/// nothing else is said: a person who judges a whole automaton looks at several
-/// behaviours.
-pub const EQUIVALENCE_COST: f64 = 4.0;
-
-impl Default for Config {
-    fn default() -> Self {
-        Self {
-            strategy: Strategy::Bayes,
-            membership_cost: 4.0,
-            comparison_cost: 1.0,
-            equivalence_cost: 4.0 * EQUIVALENCE_COST,
-            shortest_counterexamples: false,
-            robust: false,
-            conformance: None,
-            seed: 0,
-            budget: 2_000_000,
-        }
-    }
-}
-
-/// A question to the teacher.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Question<A, C> {
-    /// Is this atom acceptable?
-    Membership {
-        /// The atom to judge.
-        atom: A,
-    },
-    /// Which of the two is better?
-    Comparison {
-        /// One atom.
-        first: A,
-        /// The other.
-        second: A,
-    },
-    /// Is this the concept?
-    Equivalence {
-        /// The concept shown.
-        hypothesis: C,
-    },
-}
-
-/// A teacher's reply to a [`Question`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Reply<A> {
-    /// The atom belongs to the concept.
-    Accept,
-    /// The atom does not belong to the concept.
-    Reject,
-    /// What the comparison came to.
-    Compared(Comparison),
-    /// The hypothesis is the concept.
-    Correct,
-    /// The hypothesis is wrong about this atom.
-    Counterexample {
-        /// The atom.
-        atom: A,
-        /// Whether the concept contains it; the hypothesis says otherwise.
-        label: bool,
-    },
-    /// No answer; ask something else. Not for equivalence queries.
-    Skip,
-}
-
-/// Why a reply was not taken.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ReplyError {
-    /// The reply belongs to another kind of question.
-    #[error("this reply does not fit a {question} question: {expected}")]
-    WrongKind {
-        /// The kind of the question.
-        question: &'static str,
-        /// The replies that fit.
-        expected: &'static str,
-    },
-    /// The hypothesis already gives the atom this label.
-    #[error("this is no counterexample: the hypothesis already gives it that label")]
-    NoCounterexample,
-    /// The number belongs to an answer that stands.
-    #[error("answer {0} was given already: retract it before giving another")]
-    UsedNumber(u32),
-}
-
-/// The learner's next move.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Step<A, C> {
-    /// Ask this; hand `round` back with the reply.
-    Ask {
-        /// The question.
-        question: Question<A, C>,
-        /// The bandit's round, where the bandit chose the question.
-        round: Option<Round>,
-        /// Whether the budget ended, so that the question is good enough
-        /// rather than the one the strategy would have found.
-        hurried: bool,
-    },
-    /// The answers that stand contradict each other; one must be retracted.
-    Conflict(Contradiction),
-    /// The teacher agreed with this concept, and as many judgements as were asked
-    /// for ([`Config::conformance`]) have borne it out.
-    Done {
-        /// The concept learned.
-        hypothesis: C,
-    },
-}
-
-/// How many questions were answered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counts {
-    /// Membership queries.
-    pub membership: u32,
-    /// Comparisons.
-    pub comparison: u32,
-    /// Equivalence queries.
-    pub equivalence: u32,
-    /// Atoms judged to check a concept that the teacher had agreed with; they
-    /// are not among the membership queries.
-    #[serde(default)]
-    pub conformance: u32,
-}
-
-impl Counts {
-    /// Counts an answer; `checks` if it belongs to a check.
-    pub fn add<A, C>(&mut self, question: &Question<A, C>, checks: bool) {
-        *match question {
-            Question::Membership { .. } if checks => &mut self.conformance,
-            Question::Membership { .. } => &mut self.membership,
-            Question::Comparison { .. } => &mut self.comparison,
-            Question::Equivalence { .. } => &mut self.equivalence,
-        } += 1;
-    }
-}
-
-/// An answered question.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry<A, C> {
-    /// Its number.
-    pub answer: AnswerId,
-    /// What was asked.
-    pub question: Question<A, C>,
-    /// The bandit's round, as [`Step::Ask`] gave it.
-    pub round: Option<Round>,
-    /// What the teacher replied.
-    pub reply: Reply<A>,
-}
-
-impl<A: Clone, C> Entry<A, C> {
-    /// What the entry says about the concept or the order; none for an agreed
-    /// hypothesis and for a skipped question.
-    pub fn fact(&self) -> Option<Fact<A>> {
-        let label = |atom: &A, accepted| Fact::Label {
-            atom: atom.clone(),
-            accepted,
-        };
-        match (&self.question, &self.reply) {
-            (Question::Membership { atom }, Reply::Accept) => Some(label(atom, true)),
-            (Question::Membership { atom }, Reply::Reject) => Some(label(atom, false)),
-            (Question::Comparison { first, second }, Reply::Compared(answer)) => {
-                Some(Fact::compared(first.clone(), second.clone(), *answer))
-            }
-            (
-                Question::Equivalence { .. },
-                Reply::Counterexample {
-                    atom,
-                    label: accepted,
-                },
-            ) => Some(label(atom, *accepted)),
-            _ => None,
-        }
-    }
-}
-
-impl<A, C> Entry<A, C> {
-    /// Whether the reply is one that may be wrong where any may be: who shows a
-    /// counterexample has looked at the hypothesis.
-    fn is_doubtful(&self) -> bool {
-        !matches!(self.question, Question::Equivalence { .. })
-    }
-}
+use crate::concept::ConceptClass;
+use crate::evidence::{AnswerId, Fact};
 
 /// The learner: evidence in, question out.
 pub struct Learner<C: ConceptClass> {

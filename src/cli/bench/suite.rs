@@ -16,7 +16,7 @@ use crate::oracle::{Counterexamples, Order};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   memrep bench tomita
-  memrep bench tomita --quick --out /tmp/results
+  memrep bench tomita --quick --out results
   memrep bench tomita --trials 5 --seed 100 --strategy bayes,thesis
   memrep bench random --targets 10 --trials 2 --counterexample shortest
   memrep bench tomita --aalpy venv/bin/python
