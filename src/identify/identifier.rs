@@ -153,8 +153,8 @@ impl Identifier {
         Err(Failure::Contradiction(self.no_automaton(&core, budget)))
     }
 
-    /// Consistent automata of several sizes, from the smallest on, with their
-    /// prior weights: a function of the standing facts and the wish alone.
+    /// Consistent automata of several sizes with their chances after what was
+    /// heard: a function of the standing facts and the wish alone.
     ///
     /// # Errors
     ///
@@ -171,7 +171,7 @@ impl Identifier {
         let mut particles =
             known.unwrap_or_else(|| Particles::new(symbols, bound, wish.decay, wish.seed));
         particles.hear(wish.heard);
-        let listed = spread::list(&self.problem, &self.standing, self.at_least, bound, wish);
+        let listed = spread::list(&self.problem, &self.standing, bound, wish);
         let met = spread::met(self.problem.alphabet(), particles.met());
         self.particles = Some(particles);
         if let Some(listed) = listed {

@@ -53,12 +53,12 @@ pub struct Spread<C> {
 const NODES_PER_LISTED: u64 = 6;
 
 /// All minimal automata of `wish.sizes` sizes, of which the smallest is the
-/// smallest consistent one (and has `at_least` states or more), with their
-/// chances; none if that are too many, or it takes too much work to tell.
+/// smallest consistent one, with their chances; none if that are too many, or it
+/// takes too much work to tell. The search begins with one state, whatever an
+/// earlier one proved: else what was searched before could show in the answer.
 pub(crate) fn list(
     problem: &Problem,
     standing: &[FactId],
-    at_least: usize,
     bound: usize,
     wish: &Wish<'_, Word>,
 ) -> Option<Spread<Dfa>> {
@@ -66,7 +66,7 @@ pub(crate) fn list(
     let mut budget = Budget::new(wish.listed as u64 * NODES_PER_LISTED);
     let mut listed: Vec<Table> = Vec::new();
     let mut most = bound;
-    let mut states = at_least;
+    let mut states = 1;
     while states <= most {
         let ended = Lister::new(&instance, states).list(&mut budget, &mut |table| {
             if is_minimal(table) {

@@ -55,7 +55,6 @@ impl<C: ConceptClass> Learner<C> {
                 other => (other, simplest),
             };
         }
-        let hurried = spread.hurried;
         let posterior = Posterior::new(spread);
         let top = posterior.concepts[0].clone();
         let table = Table::new(self, &posterior, &heard, &mut random);
@@ -68,7 +67,7 @@ impl<C: ConceptClass> Learner<C> {
             0.0
         };
         let Some((best, worth)) = value::best(self, &table, wrong) else {
-            return (ask(equivalence(&top), None, hurried), Some(top));
+            return (ask(equivalence(&top), None, false), Some(top));
         };
         let question = if price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong)
         {
@@ -82,7 +81,7 @@ impl<C: ConceptClass> Learner<C> {
                 other => other,
             }
         };
-        (ask(question, None, hurried), Some(top))
+        (ask(question, None, false), Some(top))
     }
 
     /// All that was heard: what is known from the start, and then answer by
