@@ -63,7 +63,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = cost)]
     comparison_cost: f64,
     /// The cost of an equivalence query, 0 or more; four times a membership query
-    /// if not given. Strategy bayes shows an automaton when that is worth it.
+    /// if not given. Strategies bayes and exp4+ show an automaton when that is worth it.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = cost_or_nothing)]
     equivalence_cost: Option<f64>,
     /// How questions are chosen.
@@ -158,13 +158,15 @@ fn rate(text: &str) -> Result<f64, String> {
 
 impl ValueEnum for Strategy {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Bayes, Self::Thesis, Self::Membership]
+        &[Self::Bayes, Self::Exp4Plus, Self::Thesis, Self::Membership]
     }
 
     fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
         Some(match self {
             Self::Bayes => clap::builder::PossibleValue::new("bayes")
                 .help("the question of any kind that is worth most for its cost"),
+            Self::Exp4Plus => clap::builder::PossibleValue::new("exp4+")
+                .help("the posterior of bayes, and a bandit over its best question of each kind"),
             Self::Thesis => clap::builder::PossibleValue::new("thesis")
                 .help("Algorithms 4 to 6 of the dissertation's chapter 5"),
             Self::Membership => {

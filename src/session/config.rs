@@ -71,7 +71,8 @@ impl Setup {
             Some(value) => serde_json::from_value(value.clone()).map_err(|_| {
                 Malformed::new(
                     "strategy",
-                    "this strategy is unknown: give `\"bayes\"`, `\"thesis\"` or `\"membership\"`",
+                    "this strategy is unknown: give `\"bayes\"`, `\"exp4+\"`, `\"thesis\"` or \
+                     `\"membership\"`",
                 )
             })?,
         };
