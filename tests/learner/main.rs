@@ -13,4 +13,5 @@ mod implied;
 mod order;
 mod refusals;
 mod robust;
+mod teacher;
 mod tomita;
