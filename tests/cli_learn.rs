@@ -378,7 +378,7 @@ fn bad_input_is_told() {
         ),
         (
             "learn --target robot --strategy best",
-            "possible values: bayes, thesis",
+            "possible values: bayes, exp4+, thesis",
         ),
         (
             "learn --target robot --save no/such/folder.json",

@@ -162,6 +162,20 @@ mod tests {
     }
 
     #[test]
+    fn every_strategy_has_a_name() {
+        for (name, strategy) in [
+            ("bayes", Strategy::Bayes),
+            ("exp4+", Strategy::Exp4Plus),
+            ("thesis", Strategy::Thesis),
+            ("membership", Strategy::Membership),
+        ] {
+            let setup = read(&json!({"strategy": name})).unwrap();
+            assert_eq!(setup.strategy, strategy);
+            assert_eq!(serde_json::to_value(&setup).unwrap()["strategy"], name);
+        }
+    }
+
+    #[test]
     fn bad_values_are_named() {
         for (input, path) in [
             (json!({"membership_cost": 0}), "membership_cost"),

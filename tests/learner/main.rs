@@ -6,6 +6,7 @@ mod brute;
 mod claims;
 mod conflicts;
 mod conformance;
+mod exp4;
 mod finite;
 mod fold;
 mod hurried;
