@@ -29,7 +29,7 @@ pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
 
 /// So many of something, for people: "1 state", "2 states".
 pub(crate) fn counted(
-    number: impl Display + PartialEq + From<u8>,
+    number: impl Copy + Display + PartialEq + From<u8>,
     one: &str,
     more: &str,
 ) -> String {

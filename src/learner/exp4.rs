@@ -6,7 +6,7 @@
 //! have something to say, the others sleep: nobody asks how far they are to be
 //! trusted, and they are taken to have advised what was done.
 //!
-//! Its guarantee is against the better of the experts, and its regret grows with
+//! Its guarantee is against the best of the experts, and its regret grows with
 //! the square root of the rounds: a learner that ends within thirty questions
 //! leaves the weights nearly where they began.
 

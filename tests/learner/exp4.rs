@@ -1,11 +1,12 @@
 //! The bandit over the posterior's best questions: it ends with the target, and
 //! its rounds are those of EXP4, which a twin plays along.
 
+use automata::{Dfa, Word};
 use memrep::bench::{process_cpu, teach};
 use memrep::concept::{
     ConceptClass, DfaClass, Failure, FiniteAtom, FiniteClass, FiniteConcept, Sample, Spread, Wish,
 };
-use memrep::evidence::{AnswerId, Budget, Fact};
+use memrep::evidence::{AnswerId, Budget, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Learner, Losses, Question, Reply, Round, Step, Strategy};
 use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
@@ -56,6 +57,51 @@ fn every_target_is_learned() {
             assert_eq!(report.dropped, 0, "the teacher does not err");
             assert_eq!(report.hurried, 0, "the budget is ample");
         }
+    }
+}
+
+/// A teacher who after some comparisons finds no two words comparable.
+struct Silenced {
+    teacher: ScriptedTeacher,
+    willing: u32,
+}
+
+impl Teacher for Silenced {
+    type Atom = Word;
+    type Concept = Dfa;
+
+    fn membership(&mut self, atom: &Word) -> bool {
+        self.teacher.membership(atom)
+    }
+
+    fn comparison(&mut self, first: &Word, second: &Word) -> Comparison {
+        if self.willing == 0 {
+            return Comparison::Incomparable;
+        }
+        self.willing -= 1;
+        self.teacher.comparison(first, second)
+    }
+
+    fn counterexample(&mut self, hypothesis: &Dfa) -> Option<(Word, bool)> {
+        self.teacher.counterexample(hypothesis)
+    }
+}
+
+/// Comparisons that worked and then teach nothing do not keep it from asking for
+/// membership, however cheap they are (Proposition 1).
+#[test]
+fn comparisons_that_fall_silent_are_given_up() {
+    let target = Target::named("tomita:6").unwrap();
+    for seed in 0..2 {
+        let known = target.known().to_vec();
+        let mut learner = Learner::new(automata(&target), costing(8.0, seed), known);
+        let mut teacher = Silenced {
+            teacher: ScriptedTeacher::new(&target, TeacherSettings::default()),
+            willing: 3,
+        };
+        let report = teach(&mut learner, &mut teacher, 100, process_cpu, |_| ()).unwrap();
+        assert_eq!(report.learned, Some(target.dfa().canonical()));
+        assert!(report.counts.comparison > 3, "{:?}", report.counts);
     }
 }
 
@@ -228,7 +274,7 @@ impl ConceptClass for Rushed {
         budget: &mut Budget,
     ) -> Result<Spread<FiniteConcept>, Failure> {
         let mut spread = self.0.spread(wish, budget)?;
-        spread.hurried = wish.heard.len() % 2 == 0;
+        spread.hurried = wish.heard.len().is_multiple_of(2);
         Ok(spread)
     }
 

@@ -1,4 +1,8 @@
 //! Strategy `exp4+`: the best question of each kind as the arms of the bandit.
+//!
+//! What the posterior expects is right only as far as its model of the teacher
+//! is. A bandit asks the other kind now and then whatever the model says, so that
+//! a teacher who leaves the model cannot keep it at questions that teach nothing.
 
 use std::hash::Hash;
 
