@@ -19,8 +19,10 @@ pub struct End {
     /// have one label.
     pub place: Option<u32>,
     /// Of an atom outside, how long it did well: more is longer. Teachers often
-    /// prefer the failure that came later.
-    pub progress: u32,
+    /// prefer the failure that came later. Of an atom inside, how much room it
+    /// leaves: more is more ways to go on well. Teachers often prefer it to one
+    /// after which little is allowed.
+    pub merit: u32,
 }
 
 /// How two atoms end, as a concept has it.
@@ -32,23 +34,32 @@ pub enum Ending {
     SecondOnly,
     /// Both end in the same place.
     SamePlace,
-    /// Both are in the concept or neither is, and they end in different places.
-    SameLabel,
+    /// Both are in the concept, in different places of equal merit.
+    Inside,
+    /// Neither is in the concept, in different places of equal merit.
+    Outside,
     /// Neither is in the concept, and the first did well for longer.
     FirstFurther,
     /// Neither is in the concept, and the second did well for longer.
     SecondFurther,
+    /// Both are in the concept, and the first leaves more room.
+    FirstFreer,
+    /// Both are in the concept, and the second leaves more room.
+    SecondFreer,
 }
 
 impl Ending {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
         Self::FirstOnly,
         Self::SecondOnly,
         Self::SamePlace,
-        Self::SameLabel,
+        Self::Inside,
+        Self::Outside,
         Self::FirstFurther,
         Self::SecondFurther,
+        Self::FirstFreer,
+        Self::SecondFreer,
     ];
 
     /// Of two atoms that end like this.
@@ -57,10 +68,13 @@ impl Ending {
         match (first.inside, second.inside) {
             (true, false) => Self::FirstOnly,
             (false, true) => Self::SecondOnly,
-            (false, false) if first.progress > second.progress => Self::FirstFurther,
-            (false, false) if first.progress < second.progress => Self::SecondFurther,
+            (false, false) if first.merit > second.merit => Self::FirstFurther,
+            (false, false) if first.merit < second.merit => Self::SecondFurther,
+            (true, true) if first.merit > second.merit => Self::FirstFreer,
+            (true, true) if first.merit < second.merit => Self::SecondFreer,
             _ if first.place.is_some() && first.place == second.place => Self::SamePlace,
-            _ => Self::SameLabel,
+            (true, true) => Self::Inside,
+            (false, false) => Self::Outside,
         }
     }
 }
@@ -86,18 +100,23 @@ pub enum Verdict {
 }
 
 /// The places of [`Tally::counts`]: for atoms with different labels agreeing
-/// and incomparable; for the same place and for the same label strict, equal and
-/// incomparable; for failures of which one came later better, worse, equal and
-/// incomparable.
-const CELLS: usize = 12;
+/// and incomparable; for the same place, for two inside and for two outside of
+/// equal merit strict, equal and incomparable; for failures of which one came
+/// later, and for two inside of which one leaves more room, better, worse, equal
+/// and incomparable.
+const CELLS: usize = 19;
 /// The cells of one urn each.
-const URNS: [std::ops::Range<usize>; 4] = [0..2, 2..5, 5..8, 8..12];
-/// What is believed before any answer, as numbers of answers seen.
+const URNS: [std::ops::Range<usize>; 6] = [0..2, 2..5, 5..8, 8..11, 11..15, 15..19];
+/// What is believed before any answer, as numbers of answers seen. Of most
+/// endings less than one answer's worth: whoever compares has habits, and few
+/// answers show them.
 const PRIOR: [f64; CELLS] = [
-    4.5, 0.5, // different labels
-    1.2, 1.0, 0.8, // the same place
-    1.2, 1.0, 0.8, // the same label
-    1.2, 0.6, 0.8, 0.6, // one failed later
+    1.35, 0.15, // different labels
+    0.36, 0.3, 0.24, // the same place
+    0.36, 0.3, 0.24, // both inside
+    0.36, 0.3, 0.24, // both outside
+    0.36, 0.18, 0.24, 0.18, // one failed later
+    0.27, 0.27, 0.24, 0.18, // one leaves more room
 ];
 /// Answers that are wrong, and that are right.
 const ERRORS: [f64; 2] = [0.5, 9.5];
@@ -122,18 +141,26 @@ impl Tally {
     }
 
     /// Takes note of the answer to a comparison of atoms that end like this.
+    #[inline]
     pub fn comparison(&mut self, ending: Ending, verdict: Verdict, sure: bool) {
         let cell = match (ending, verdict) {
             (Ending::SamePlace, Verdict::Worse) => 2,
             (Ending::SamePlace, Verdict::Equal) => 3,
             (Ending::SamePlace, Verdict::Incomparable) => 4,
-            (Ending::SameLabel, Verdict::Worse) => 5,
-            (Ending::SameLabel, Verdict::Equal) => 6,
-            (Ending::SameLabel, Verdict::Incomparable) => 7,
-            (Ending::SecondFurther, Verdict::Worse) => 8,
-            (Ending::FirstFurther, Verdict::Worse) => 9,
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => 10,
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => 11,
+            (Ending::Inside, Verdict::Worse) => 5,
+            (Ending::Inside, Verdict::Equal) => 6,
+            (Ending::Inside, Verdict::Incomparable) => 7,
+            (Ending::Outside, Verdict::Worse) => 8,
+            (Ending::Outside, Verdict::Equal) => 9,
+            (Ending::Outside, Verdict::Incomparable) => 10,
+            (Ending::SecondFurther, Verdict::Worse) => 11,
+            (Ending::FirstFurther, Verdict::Worse) => 12,
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => 13,
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => 14,
+            (Ending::SecondFreer, Verdict::Worse) => 15,
+            (Ending::FirstFreer, Verdict::Worse) => 16,
+            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Equal) => 17,
+            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Incomparable) => 18,
             (_, Verdict::Incomparable) => 1,
             (Ending::SecondOnly, Verdict::Worse) => {
                 self.certain(true, sure);
@@ -177,6 +204,7 @@ impl Tally {
             let strict = share(urn, from) / 2.0;
             [strict, strict, share(urn, from + 1), share(urn, from + 2)]
         };
+        let directed = |urn: usize, cells: [usize; 4]| cells.map(|cell| share(urn, cell));
         match ending {
             // A wrong answer names the worse one.
             Ending::FirstOnly => [
@@ -192,9 +220,12 @@ impl Tally {
                 share(0, 1),
             ],
             Ending::SamePlace => strict(1, 2),
-            Ending::SameLabel => strict(2, 5),
-            Ending::FirstFurther => [share(3, 8), share(3, 9), share(3, 10), share(3, 11)],
-            Ending::SecondFurther => [share(3, 9), share(3, 8), share(3, 10), share(3, 11)],
+            Ending::Inside => strict(2, 5),
+            Ending::Outside => strict(3, 8),
+            Ending::FirstFurther => directed(4, [11, 12, 13, 14]),
+            Ending::SecondFurther => directed(4, [12, 11, 13, 14]),
+            Ending::FirstFreer => directed(5, [15, 16, 17, 18]),
+            Ending::SecondFreer => directed(5, [16, 15, 17, 18]),
         }
     }
 }
@@ -224,7 +255,7 @@ impl Belief {
             for (cell, prior) in PRIOR.iter().enumerate() {
                 cells[cell] += (prior + seen).ln();
                 // Either way round is as likely.
-                if cell == 2 || cell == 5 {
+                if cell == 2 || cell == 5 || cell == 8 {
                     cells[cell] -= std::f64::consts::LN_2;
                 }
             }

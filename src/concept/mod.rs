@@ -80,7 +80,7 @@ pub trait ConceptClass {
         End {
             inside: self.contains(concept, atom),
             place: None,
-            progress: 0,
+            merit: 0,
         }
     }
 

@@ -108,6 +108,14 @@ pub struct Sample {
     pub complete: bool,
 }
 
+/// How many words of two symbols lead on to acceptance (section 5.3, "Tomita
+/// languages").
+fn room(dfa: &Dfa, state: StateId) -> u32 {
+    let next = |state| dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
+    let ends = next(state).flat_map(next);
+    ends.filter(|&end| dfa.is_accepting(end)).count() as u32
+}
+
 /// How a word ends in an automaton.
 pub fn end(dfa: &Dfa, word: &Word) -> End {
     let is_sink = |state: StateId| {
@@ -125,9 +133,11 @@ pub fn end(dfa: &Dfa, word: &Word) -> End {
         state = dfa.next(state, symbol);
         progress = step(state, read + 1).progress(Some(progress));
     }
+    let inside = dfa.is_accepting(state);
+    let merit = if inside { room(dfa, state) } else { progress };
     End {
-        inside: dfa.is_accepting(state),
+        inside,
         place: Some(state.index() as u32),
-        progress,
+        merit,
     }
 }

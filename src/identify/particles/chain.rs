@@ -5,7 +5,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::script::Script;
+use super::script::{Run, Script};
 use super::shape::Shape;
 use crate::belief::{Belief, Tally};
 
@@ -15,12 +15,7 @@ use crate::belief::{Belief, Tally};
 pub(crate) struct Machine {
     pub(crate) delta: Vec<u8>,
     pub(crate) output: Vec<bool>,
-    /// The state at every node of the script.
-    at: Vec<u8>,
-    /// Whether a word uses the edge.
-    used: Vec<bool>,
-    /// Room to work in.
-    progress: Vec<u32>,
+    run: Run,
     pub(crate) tally: Tally,
     /// The logarithms of prior and likelihood.
     prior: f64,
@@ -40,9 +35,7 @@ impl Machine {
         let mut machine = Self {
             delta,
             output,
-            at: Vec::new(),
-            used: Vec::new(),
-            progress: Vec::new(),
+            run: Run::default(),
             tally: Tally::default(),
             prior: 0.0,
             likelihood: 0.0,
@@ -64,15 +57,20 @@ impl Machine {
 
     /// Judges anew what was heard.
     pub(crate) fn hear(&mut self, ground: &Ground<'_>) {
-        ground.script.run(&self.delta, &mut self.at, &mut self.used);
+        (ground.script).run(&self.delta, &self.output, &mut self.run);
         self.judge(ground);
     }
 
     fn judge(&mut self, ground: &Ground<'_>) {
-        self.tally = (ground.script).tally(&self.delta, &self.output, &self.at, &mut self.progress);
+        self.tally = ground.script.tally(&self.delta, &self.output, &self.run);
         self.likelihood = ground.belief.log_chance(&self.tally);
     }
 }
+
+/// Of a new state's edges, the share that is copied.
+const COPIED: f64 = 0.6;
+/// The chance that a new state's output is copied.
+const SAME_OUTPUT: f64 = 0.7;
 
 /// Moves a machine.
 #[derive(Default)]
@@ -97,13 +95,13 @@ impl Mover {
         let kind: u32 = rng.random_range(0..100);
         let bonus = match kind {
             0..50 => redirect(&mut other, rng),
-            50..60 => swap(&mut other, ground.symbols, rng),
-            60..75 => {
+            50..58 => swap(&mut other, ground.symbols, rng),
+            58..70 => {
                 let state = rng.random_range(0..other.states());
                 other.output[state] ^= true;
                 Some(0.0)
             }
-            75..88 => split(&mut other, ground, rng),
+            70..85 => split(&mut other, ground, rng),
             _ => merge(&mut other, ground.symbols, rng),
         };
         let accepted = bonus.is_some_and(|bonus| {
@@ -117,16 +115,7 @@ impl Mover {
                 machine.prior
             };
             let allowed = bonus + other.prior - machine.prior;
-            let unheard = other.states() == machine.states()
-                && (machine.delta.iter().zip(&other.delta).zip(&machine.used))
-                    .all(|((old, new), used)| old == new || !used);
-            if unheard {
-                other.at.clone_from(&machine.at);
-                other.used.clone_from(&machine.used);
-                other.judge(ground);
-            } else {
-                other.hear(ground);
-            }
+            other.hear(ground);
             let draw = rng.random::<f64>().ln();
             draw < allowed + power * (other.likelihood - machine.likelihood)
         });
@@ -183,27 +172,52 @@ fn swap(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<f
     (machine.delta[one] != machine.delta[other]).then_some(0.0)
 }
 
-/// Gives one edge a target of its own that is a copy of the old one. The
-/// language stays, so that what comes of the copy is found step by step.
+/// Lets some of the edges into a state lead to a new one, whose row is partly a
+/// copy of the old state's and partly drawn.
 fn split(machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) -> Option<f64> {
     let states = machine.states();
     let symbols = ground.symbols;
     if states == ground.shape.most() {
         return None;
     }
-    let edge = rng.random_range(0..machine.delta.len());
-    let place = rng.random_range(1..=states);
-    let target = usize::from(machine.delta[edge]);
-    let row = target * symbols;
-    for symbol in 0..symbols {
-        machine.delta.push(machine.delta[row + symbol]);
+    let old = rng.random_range(0..states);
+    let into: Vec<usize> = (0..machine.delta.len())
+        .filter(|&edge| usize::from(machine.delta[edge]) == old)
+        .collect();
+    if into.is_empty() {
+        return None;
     }
-    machine.output.push(machine.output[target]);
-    machine.delta[edge] = states as u8;
-    exchange(machine, symbols, place, states);
-    // There are as many times fewer ways to undo this as to do it as there are
-    // symbols.
-    Some((symbols as f64).ln())
+    let row: Vec<u8> = machine.delta[old * symbols..(old + 1) * symbols].to_vec();
+    let mut moved = 0;
+    if rng.random() {
+        machine.delta[into[rng.random_range(0..into.len())]] = states as u8;
+        moved = 1;
+    } else {
+        for &edge in &into {
+            if rng.random() {
+                machine.delta[edge] = states as u8;
+                moved += 1;
+            }
+        }
+    }
+    if moved == 0 {
+        return None;
+    }
+    for &target in &row {
+        let target = if rng.random::<f64>() >= COPIED {
+            rng.random_range(0..=states) as u8
+        } else if usize::from(target) == old && rng.random() {
+            states as u8
+        } else {
+            target
+        };
+        machine.delta.push(target);
+    }
+    let output = machine.output[old] ^ (rng.random::<f64>() >= SAME_OUTPUT);
+    machine.output.push(output);
+    let chance = split_chance(machine, &row, old, [moved, into.len()]);
+    exchange(machine, symbols, rng.random_range(1..=states), states);
+    Some(-chance)
 }
 
 /// The reverse of [`split`].
@@ -212,22 +226,52 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
     if last == 0 {
         return None;
     }
-    let place = rng.random_range(1..=last);
-    exchange(machine, symbols, place, last);
-    let other = rng.random_range(0..last);
-    let (row, copy) = (other * symbols, last * symbols);
-    let mut edges = (0..machine.delta.len()).filter(|&e| usize::from(machine.delta[e]) == last);
-    let edge = edges.next().filter(|&edge| edge < copy)?;
-    if edges.next().is_some() || machine.output[other] != machine.output[last] {
-        return None;
+    exchange(machine, symbols, rng.random_range(1..=last), last);
+    let old = rng.random_range(0..last);
+    let mut row: Vec<u8> = machine.delta[old * symbols..(old + 1) * symbols].to_vec();
+    let mut moved = 0;
+    let mut into = 0;
+    for edge in 0..last * symbols {
+        let target = usize::from(machine.delta[edge]);
+        moved += usize::from(target == last);
+        into += usize::from(target == last || target == old);
     }
-    machine.delta[edge] = other as u8;
-    if machine.delta[row..row + symbols] != machine.delta[copy..copy + symbols] {
-        return None;
+    for target in &mut row {
+        if usize::from(*target) == last {
+            *target = old as u8;
+        }
     }
-    machine.delta.truncate(copy);
+    let chance = split_chance(machine, &row, old, [moved, into]);
+    for target in &mut machine.delta {
+        if usize::from(*target) == last {
+            *target = old as u8;
+        }
+    }
+    machine.delta.truncate(last * symbols);
     machine.output.truncate(last);
-    Some(-(symbols as f64).ln())
+    Some(chance)
+}
+
+/// The logarithm of the chance with which [`split`] draws the last state of a
+/// machine from state `old`, which had this row and so many edges into it, of
+/// which so many were moved.
+fn split_chance(machine: &Machine, row: &[u8], old: usize, [moved, into]: [usize; 2]) -> f64 {
+    let last = machine.states() - 1;
+    let into = into as f64;
+    let one = if moved == 1 { 0.5 / into } else { 0.0 };
+    let mut chance = (one + 0.5 * (-into).exp2()).ln();
+    let new = &machine.delta[last * row.len()..];
+    for (&target, &copied) in new.iter().zip(row) {
+        let (target, copied) = (usize::from(target), usize::from(copied));
+        let copy = if copied == old {
+            f64::from(u8::from(target == old || target == last)) / 2.0
+        } else {
+            f64::from(u8::from(target == copied))
+        };
+        chance += (COPIED * copy + (1.0 - COPIED) / machine.states() as f64).ln();
+    }
+    let same = machine.output[last] == machine.output[old];
+    chance + if same { SAME_OUTPUT } else { 1.0 - SAME_OUTPUT }.ln()
 }
 
 /// Exchanges the numbers of two states, neither of them the start.

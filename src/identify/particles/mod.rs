@@ -6,6 +6,7 @@
 mod chain;
 mod script;
 mod shape;
+mod visits;
 
 use std::collections::BTreeMap;
 
@@ -17,27 +18,27 @@ use self::chain::{Ground, Machine, Mover};
 use self::script::Script;
 pub(crate) use self::script::Step;
 use self::shape::Shape;
+use self::visits::Visits;
 use super::completion::Table;
-use super::spread::{Wish, breadth_first, is_minimal};
+use super::spread::Wish;
 use crate::belief::{Belief, Heard};
 
 /// The powers to which the likelihood is raised: hot chains roam, and bring the
 /// cold ones what they find.
 const LEVELS: [f64; 8] = [1.0, 0.8, 0.62, 0.47, 0.35, 0.25, 0.17, 0.1];
-/// From so many of the levels what is met is remembered.
-const REMEMBERED: usize = 3;
+/// Of so many of the levels what is visited counts.
+const COLD: usize = 3;
 /// Chains of each level.
 const LADDERS: usize = 8;
-/// Moves of a chain before it may exchange its place.
-const LEG: usize = 24;
-/// Moves of all chains together after every answer.
-const MOVES: usize = 40_000;
-/// Automata up to this size take so many moves; larger ones more, up to
-/// [`MOST`] times as many.
-const SMALL: f64 = 6.0;
-const MOST: f64 = 6.0;
-/// A share of the posterior that does not matter.
-const NEGLIGIBLE: f64 = 1e-7;
+/// Moves of a cold chain, and of another, before it may exchange its place.
+const LEG: [usize; 2] = [24, 12];
+/// Such legs of every chain before the ladders are looked at.
+const LEGS: usize = 16;
+/// They go on, at most so many times as long, until that many ladders came to
+/// automata whose likeliest is within this logarithm of the likeliest of all.
+const MOST: usize = 6;
+const AGREEING: usize = 5;
+const NEAR: f64 = 3.0;
 /// A ladder is stuck if the best automaton in it is less likely than that of
 /// another by this logarithm.
 const HOPELESS: f64 = 6.0;
@@ -130,7 +131,6 @@ impl Particles {
     fn travel(&self) -> (Places, BTreeMap<Table, f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(self.heard.len() as u64);
-        let mut met = BTreeMap::new();
         let ground = self.ground();
         let machine = |(delta, output): &(Vec<u8>, Vec<bool>)| {
             Machine::new(delta.clone(), output.clone(), &ground)
@@ -139,37 +139,18 @@ impl Particles {
         let mut machines: Vec<[Machine; LEVELS.len()]> = (start.iter())
             .map(|ladder| ladder.each_ref().map(machine))
             .collect();
-        let states: usize = machines.iter().flatten().map(Machine::states).sum();
-        let chains = LADDERS * LEVELS.len();
-        let states = states as f64 / chains as f64;
-        let moves = MOVES as f64 * (states / SMALL).powi(3).clamp(1.0, MOST);
-        // At most a few hundred thousand, and never negative.
-        #[expect(clippy::cast_sign_loss, reason = "the number of moves is positive")]
-        let legs = moves as usize / chains / LEG;
         let mut mover = Mover::default();
-        for ladder in &mut machines {
-            let mut found = BTreeMap::new();
-            for leg in 0..legs {
-                for (level, machine) in ladder.iter_mut().enumerate() {
-                    for step in 0..LEG {
-                        let moved = mover.step(machine, LEVELS[level], &ground, &mut rng);
-                        if level < REMEMBERED && (moved || step == 0) && !machine.tally.is_refuted()
-                        {
-                            remember(&mut found, machine);
-                        }
-                    }
-                }
-                // Neighbours exchange their places, even and odd in turn.
-                for level in (leg % 2..LEVELS.len() - 1).step_by(2) {
-                    let gain = ladder[level + 1].likelihood - ladder[level].likelihood;
-                    let chance = (LEVELS[level] - LEVELS[level + 1]) * gain;
-                    if rng.random::<f64>().ln() < chance {
-                        ladder.swap(level, level + 1);
-                    }
-                }
+        let mut visits = Visits::default();
+        for _ in 0..MOST {
+            for (number, ladder) in machines.iter_mut().enumerate() {
+                let mut visit = |machine: &Machine| visits.add(number, machine);
+                travel(ladder, &mut mover, &ground, &mut rng, &mut visit);
             }
-            share(&mut met, found);
+            if visits.agree() {
+                break;
+            }
         }
+        let met = visits.shares();
         migrate(&mut machines);
         let place = |machine: Machine| (machine.delta, machine.output);
         let places = machines.into_iter().map(|ladder| ladder.map(place));
@@ -183,15 +164,32 @@ impl Particles {
     }
 }
 
-/// Adds what one ladder found: every ladder has the same say, so that where they
-/// do not agree, nothing is taken for sure.
-fn share(met: &mut BTreeMap<Table, f64>, found: BTreeMap<Table, f64>) {
-    let top = found.values().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = found.values().map(|chance| (chance - top).exp()).sum();
-    for (table, chance) in found {
-        let share = (chance - top).exp() / sum;
-        if share > NEGLIGIBLE {
-            *met.entry(table).or_insert(0.0) += share;
+/// Lets the chains of a ladder make their moves, and shows where the cold ones
+/// come to.
+fn travel(
+    ladder: &mut [Machine; LEVELS.len()],
+    mover: &mut Mover,
+    ground: &Ground<'_>,
+    rng: &mut ChaCha8Rng,
+    visit: &mut impl FnMut(&Machine),
+) {
+    for leg in 0..LEGS {
+        for (level, machine) in ladder.iter_mut().enumerate() {
+            let cold = level < COLD;
+            for step in 0..LEG[usize::from(!cold)] {
+                let moved = mover.step(machine, LEVELS[level], ground, rng);
+                if cold && (moved || step == 0) {
+                    visit(machine);
+                }
+            }
+        }
+        // Neighbours exchange their places, even and odd in turn.
+        for level in (leg % 2..LEVELS.len() - 1).step_by(2) {
+            let gain = ladder[level + 1].likelihood - ladder[level].likelihood;
+            let chance = (LEVELS[level] - LEVELS[level + 1]) * gain;
+            if rng.random::<f64>().ln() < chance {
+                ladder.swap(level, level + 1);
+            }
         }
     }
 }
@@ -210,15 +208,6 @@ fn migrate(machines: &mut [[Machine; LEVELS.len()]]) {
     {
         let best = machines[best].clone();
         machines[worst] = best;
-    }
-}
-
-fn remember(met: &mut BTreeMap<Table, f64>, machine: &Machine) {
-    let delta = machine.delta.iter().map(|&t| u32::from(t)).collect();
-    let table: Table = (delta, machine.output.clone());
-    if is_minimal(&table) {
-        let chance = machine.log_chance() + numberings(machine.states());
-        met.insert(breadth_first(&table), chance);
     }
 }
 

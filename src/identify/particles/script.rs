@@ -2,6 +2,7 @@
 
 use automata::Word;
 
+use super::LARGEST;
 use crate::belief::{End, Ending, Heard, Tally, Verdict, compared};
 use crate::evidence::Fact;
 
@@ -15,6 +16,17 @@ struct Node {
 
 /// No state.
 const NOWHERE: u8 = u8::MAX;
+
+/// The words of a script on a table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Run {
+    /// The state at every node.
+    at: Vec<u8>,
+    /// How long the word of every node did well.
+    progress: Vec<u32>,
+    /// Whether a word uses the edge.
+    pub(crate) used: Vec<bool>,
+}
 
 /// All that was heard so far.
 #[derive(Clone, Debug)]
@@ -76,63 +88,78 @@ impl Script {
         self.labels.len() + self.comparisons.len()
     }
 
-    /// Where every word ends in the table, and which edges are used.
-    pub(crate) fn run(&self, delta: &[u8], at: &mut Vec<u8>, used: &mut Vec<bool>) {
-        at.clear();
-        at.push(0);
-        used.clear();
-        used.resize(delta.len(), false);
-        for node in &self.nodes[1..] {
-            let edge = usize::from(at[node.parent as usize]) * self.symbols + node.symbol as usize;
-            used[edge] = true;
-            at.push(delta[edge]);
-        }
-    }
-
-    /// What was heard, as a table with these outputs sees it whose states at the
-    /// nodes are `at`. `progress` is room to work in.
-    pub(crate) fn tally(
-        &self,
-        delta: &[u8],
-        output: &[bool],
-        at: &[u8],
-        progress: &mut Vec<u32>,
-    ) -> Tally {
-        let mut tally = Tally::default();
-        for &(node, accepted, sure) in &self.labels {
-            let out = output[usize::from(at[node as usize])];
-            tally.label(out == accepted, sure);
-        }
-        if self.comparisons.is_empty() {
-            return tally;
-        }
+    /// Runs every word on the table: where it ends, how long it did well, and
+    /// which edges are used.
+    pub(crate) fn run(&self, delta: &[u8], output: &[bool], run: &mut Run) {
         let is_sink = |state: &usize| {
             let row = state * self.symbols..(state + 1) * self.symbols;
             !output[*state] && delta[row].iter().all(|&t| usize::from(t) == *state)
         };
         let sink = (0..output.len()).find(is_sink).map_or(NOWHERE, |s| s as u8);
-        progress.clear();
-        for (node, &state) in self.nodes.iter().zip(at) {
-            let before = progress.get(node.parent as usize).copied();
-            let step = Step {
-                depth: node.depth,
-                accepting: output[usize::from(state)],
-                sunk: state == sink,
-            };
-            progress.push(step.progress(before));
+        run.used.clear();
+        run.used.resize(delta.len(), false);
+        run.at.clear();
+        run.progress.clear();
+        let step = |state: u8, depth| Step {
+            depth,
+            accepting: output[usize::from(state)],
+            sunk: state == sink,
+        };
+        run.at.push(0);
+        run.progress.push(step(0, 0).progress(None));
+        for node in &self.nodes[1..] {
+            let parent = node.parent as usize;
+            let edge = usize::from(run.at[parent]) * self.symbols + node.symbol as usize;
+            run.used[edge] = true;
+            let state = delta[edge];
+            let progress = step(state, node.depth).progress(Some(run.progress[parent]));
+            run.at.push(state);
+            run.progress.push(progress);
         }
+    }
+
+    /// What was heard, as a table with these outputs sees it after its [`Run`].
+    pub(crate) fn tally(&self, delta: &[u8], output: &[bool], run: &Run) -> Tally {
+        let mut tally = Tally::default();
+        for &(node, accepted, sure) in &self.labels {
+            let out = output[usize::from(run.at[node as usize])];
+            tally.label(out == accepted, sure);
+        }
+        if self.comparisons.is_empty() {
+            return tally;
+        }
+        let room = self.room(delta, output);
         let end = |node: u32| {
-            let state = at[node as usize];
+            let state = run.at[node as usize];
+            let inside = output[usize::from(state)];
+            let merit = if inside {
+                room[usize::from(state)].into()
+            } else {
+                run.progress[node as usize]
+            };
             End {
-                inside: output[usize::from(state)],
+                inside,
                 place: Some(state.into()),
-                progress: progress[node as usize],
+                merit,
             }
         };
         for &(first, second, verdict, sure) in &self.comparisons {
             tally.comparison(Ending::of(end(first), end(second)), verdict, sure);
         }
         tally
+    }
+
+    /// How many words of two symbols lead from each state on to acceptance.
+    fn room(&self, delta: &[u8], output: &[bool]) -> [u16; LARGEST] {
+        let mut one = [0_u16; LARGEST];
+        let mut two = [0_u16; LARGEST];
+        for (sum, row) in one.iter_mut().zip(delta.chunks_exact(self.symbols)) {
+            *sum = row.iter().map(|&t| u16::from(output[usize::from(t)])).sum();
+        }
+        for (sum, row) in two.iter_mut().zip(delta.chunks_exact(self.symbols)) {
+            *sum = row.iter().map(|&t| one[usize::from(t)]).sum();
+        }
+        two
     }
 }
 
@@ -155,11 +182,13 @@ impl Step {
     /// fell into a rejecting sink; what never did comes after all that did, by
     /// its longest accepted prefix.
     pub(crate) fn progress(self, before: Option<u32>) -> u32 {
-        match before {
-            Some(sunk) if self.sunk && sunk < AFLOAT => sunk,
-            _ if self.sunk => self.depth,
-            _ if self.accepting => AFLOAT + self.depth + 1,
-            before => before.unwrap_or(AFLOAT),
+        let before = before.unwrap_or(AFLOAT);
+        if self.accepting {
+            AFLOAT + self.depth + 1
+        } else if self.sunk {
+            before.min(self.depth)
+        } else {
+            before
         }
     }
 }

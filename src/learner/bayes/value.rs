@@ -100,10 +100,11 @@ pub(super) fn best<C: ConceptClass>(
         let (first, second) = (&table.atoms[one], &table.atoms[other]);
         learner.evidence.may_compare(first, second)
     };
+    let taught = 1.0 + HABITS / (1.0 + f64::from(learner.counts().comparison) / FAMILIAR);
     for (_, one, other) in pairs.into_iter().filter(asked).take(CLOSELY) {
         let (first, second) = (&table.ends[one], &table.ends[other]);
         let worth = Worth {
-            bits: f64::from(outlook.bits(first, second, 1)),
+            bits: taught * f64::from(outlook.bits(first, second, 1)),
             cost: config.comparison_cost,
         };
         if beats(&comparison, worth) {
@@ -113,6 +114,12 @@ pub(super) fn best<C: ConceptClass>(
     }
     [membership, comparison]
 }
+
+/// A comparison also tells how this teacher compares, which makes later ones tell
+/// more: to the first one this adds so many times what it tells of the concept,
+/// and to one after this many others half as much.
+const HABITS: f64 = 1.0;
+const FAMILIAR: f64 = 3.3;
 
 /// The concepts by which pairs are looked at first, and the pairs that are
 /// looked at more closely then.
@@ -124,7 +131,7 @@ struct Outlook {
     /// By concept and by the ending of two atoms: the chances of the four
     /// answers and what these leave open in bits, times the concept's chance.
     /// Eight numbers fill a register.
-    parts: Vec<[[f32; 8]; 6]>,
+    parts: Vec<[[f32; 8]; Ending::ALL.len()]>,
 }
 
 impl Outlook {
