@@ -1,0 +1,71 @@
+//! Which concepts are one, because nothing that can be shown and is open tells
+//! them apart.
+
+use std::collections::HashMap;
+
+use automata::{Dfa, Word};
+
+use super::catalogue::Catalogue;
+
+/// As many concepts are remembered.
+const REMEMBERED: usize = 200_000;
+
+/// The classes met so far. They save work and change no answer: to be told apart
+/// or not does not depend on who else was met.
+#[derive(Default)]
+pub(super) struct Classes {
+    known: HashMap<Dfa, usize>,
+    /// The concepts with the same labels in the catalogue.
+    groups: HashMap<Vec<u64>, Group>,
+    count: usize,
+}
+
+/// Concepts that no word of the catalogue tells apart.
+#[derive(Default)]
+struct Group {
+    /// One of each class, and the number of the class.
+    members: Vec<(Dfa, usize)>,
+    /// Words beyond the catalogue that told some of them apart.
+    telling: Vec<Word>,
+}
+
+impl Classes {
+    /// The number of the concept's class. `separate` finds a word that tells two
+    /// concepts apart, if there is one.
+    pub(super) fn class_of(
+        &mut self,
+        dfa: &Dfa,
+        catalogue: &Catalogue,
+        separate: impl Fn(&Dfa, &Dfa) -> Option<Word>,
+    ) -> usize {
+        if let Some(&class) = self.known.get(dfa) {
+            return class;
+        }
+        if self.known.len() >= REMEMBERED {
+            self.known.clear();
+            self.groups.clear();
+        }
+        let group = self.groups.entry(catalogue.signature(dfa)).or_default();
+        let mut same = None;
+        for (member, class) in &group.members {
+            let differs = |word: &Word| member.accepts(word) != dfa.accepts(word);
+            if group.telling.iter().any(differs) {
+                continue;
+            }
+            match separate(member, dfa) {
+                Some(word) => group.telling.push(word),
+                None => {
+                    same = Some(*class);
+                    break;
+                }
+            }
+        }
+        let class = same.unwrap_or_else(|| {
+            self.count += 1;
+            group.members.push((dfa.clone(), self.count));
+            self.count
+        });
+        self.known.insert(dfa.clone(), class);
+        class
+    }
+}

@@ -1,0 +1,7 @@
+//! Worlds through their public door, beside brute-force twins, and learning in
+//! them.
+
+mod draw;
+mod grid;
+mod learn;
+mod pool;
