@@ -14,7 +14,7 @@ pub(crate) fn random(number: u64) -> ChaCha8Rng {
 
 /// The first so many letters.
 pub(crate) fn alphabet(letters: usize) -> Alphabet {
-    let names = ["a", "b", "c", "d", "e", "f", "g", "h"];
+    let names = ["a", "b", "c", "d", "e", "f", "g", "h", "i"];
     Alphabet::new(names.into_iter().take(letters)).unwrap()
 }
 
@@ -23,6 +23,8 @@ pub(crate) struct Sort {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
     pub(crate) letters: usize,
+    /// Of the letters so many have no tile.
+    pub(crate) silent: usize,
     /// Of a hundred cells, so many are coloured, and so many walls.
     pub(crate) coloured: u32,
     pub(crate) walls: u32,
@@ -34,7 +36,7 @@ pub(crate) struct Sort {
 pub(crate) fn grid(sort: &Sort, random: &mut ChaCha8Rng) -> Grid {
     let alphabet = alphabet(sort.letters);
     loop {
-        let symbols: Vec<Symbol> = alphabet.symbols().collect();
+        let symbols: Vec<Symbol> = alphabet.symbols().take(sort.letters - sort.silent).collect();
         let mut tile = |_: usize| match random.random_range(0..100_u32) {
             drawn if drawn < sort.coloured => Tile::Coloured(*symbols.choose(random).unwrap()),
             drawn if drawn < sort.coloured + sort.walls => Tile::Wall,

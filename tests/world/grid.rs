@@ -80,6 +80,7 @@ fn small(number: u64) -> Grid {
         rows: 1 + (number % 3) as usize,
         columns: 2 + (number % 2) as usize,
         letters: 2 + (number % 2) as usize,
+        silent: 0,
         coloured: 40,
         walls: 10,
         labelling: if number % 3 == 0 {

@@ -3,5 +3,6 @@
 
 mod draw;
 mod grid;
+mod large;
 mod learn;
 mod pool;
