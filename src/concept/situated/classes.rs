@@ -16,17 +16,17 @@ const REMEMBERED: usize = 200_000;
 pub(super) struct Classes {
     known: HashMap<Dfa, usize>,
     /// The concepts with the same labels in the catalogue.
-    groups: HashMap<Vec<u64>, Group>,
+    groups: HashMap<Vec<u64>, Vec<Member>>,
+    /// Words beyond the catalogue that told some concepts apart: they are likely to
+    /// do so again.
+    telling: Vec<Word>,
     count: usize,
 }
 
-/// Concepts that no word of the catalogue tells apart.
-#[derive(Default)]
-struct Group {
-    /// One of each class, and the number of the class.
-    members: Vec<(Dfa, usize)>,
-    /// Words beyond the catalogue that told some of them apart.
-    telling: Vec<Word>,
+/// One concept of a class, with the number of the class.
+struct Member {
+    dfa: Dfa,
+    class: usize,
 }
 
 impl Classes {
@@ -44,25 +44,28 @@ impl Classes {
         if self.known.len() >= REMEMBERED {
             self.known.clear();
             self.groups.clear();
+            self.telling.clear();
         }
         let group = self.groups.entry(catalogue.signature(dfa)).or_default();
         let mut same = None;
-        for (member, class) in &group.members {
-            let differs = |word: &Word| member.accepts(word) != dfa.accepts(word);
-            if group.telling.iter().any(differs) {
+        for member in &*group {
+            let differs = |word: &Word| member.dfa.accepts(word) != dfa.accepts(word);
+            if self.telling.iter().any(differs) {
                 continue;
             }
-            match separate(member, dfa) {
-                Some(word) => group.telling.push(word),
-                None => {
-                    same = Some(*class);
-                    break;
-                }
+            if let Some(word) = separate(&member.dfa, dfa) {
+                self.telling.push(word);
+            } else {
+                same = Some(member.class);
+                break;
             }
         }
         let class = same.unwrap_or_else(|| {
             self.count += 1;
-            group.members.push((dfa.clone(), self.count));
+            group.push(Member {
+                dfa: dfa.clone(),
+                class: self.count,
+            });
             self.count
         });
         self.known.insert(dfa.clone(), class);
