@@ -85,4 +85,35 @@ impl Machine {
             .filter(move |(_, next)| *next == state)
             .map(|(before, _)| before as u32)
     }
+
+    /// The state after each block of so many symbols, by state and then by block: a
+    /// block is its symbols read as a number.
+    pub(super) fn blocks(&self, width: usize) -> Vec<u32> {
+        let mut steps: Vec<u32> = (0..self.size() as u32).collect();
+        for _ in 0..width {
+            let longer = steps.iter().flat_map(|&state| {
+                (0..self.symbols).map(move |symbol| {
+                    if state == DEAD {
+                        DEAD
+                    } else {
+                        self.next[state as usize * self.symbols + symbol]
+                    }
+                })
+            });
+            steps = longer.collect();
+        }
+        steps
+    }
+
+    /// The state after these blocks, of which there are so many different ones.
+    pub(super) fn run_blocks(&self, steps: &[u32], blocks: &[u8], different: usize) -> Option<u32> {
+        let mut state = self.start?;
+        for &block in blocks {
+            state = steps[state as usize * different + usize::from(block)];
+            if state == DEAD {
+                return None;
+            }
+        }
+        Some(state)
+    }
 }

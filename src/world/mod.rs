@@ -182,8 +182,9 @@ impl World {
     /// simple one would have all words.
     pub fn outline(&self) -> Option<Dfa> {
         match self {
-            Self::Words(_) | Self::Pool(_) => None,
+            Self::Words(_) => None,
             Self::Grid(grid) => grid.outline(),
+            Self::Pool(pool) => pool.outline(),
         }
     }
 }

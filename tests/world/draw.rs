@@ -36,7 +36,10 @@ pub(crate) struct Sort {
 pub(crate) fn grid(sort: &Sort, random: &mut ChaCha8Rng) -> Grid {
     let alphabet = alphabet(sort.letters);
     loop {
-        let symbols: Vec<Symbol> = alphabet.symbols().take(sort.letters - sort.silent).collect();
+        let symbols: Vec<Symbol> = alphabet
+            .symbols()
+            .take(sort.letters - sort.silent)
+            .collect();
         let mut tile = |_: usize| match random.random_range(0..100_u32) {
             drawn if drawn < sort.coloured => Tile::Coloured(*symbols.choose(random).unwrap()),
             drawn if drawn < sort.coloured + sort.walls => Tile::Wall,

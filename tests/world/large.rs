@@ -62,12 +62,22 @@ fn ended_by_the_ninth(dfa: &Dfa) -> Dfa {
     let end = dfa.size();
     let mut rows: Vec<Vec<usize>> = dfa
         .states()
-        .map(|q| dfa.alphabet().symbols().map(move |a| dfa.next(q, a).index()))
+        .map(|q| {
+            dfa.alphabet()
+                .symbols()
+                .map(move |a| dfa.next(q, a).index())
+        })
         .map(|row| row.take(8).chain([end]).collect())
         .collect();
     rows.push(vec![end; 9]);
     let accepting = (0..=end).map(|state| state == end).collect();
-    Dfa::new(dfa.alphabet().clone(), dfa.start().index(), accepting, &rows).unwrap()
+    Dfa::new(
+        dfa.alphabet().clone(),
+        dfa.start().index(),
+        accepting,
+        &rows,
+    )
+    .unwrap()
 }
 
 #[test]
@@ -78,7 +88,10 @@ fn witnesses_in_large_grids() {
         let prior = Prior::none(world.alphabet());
         let class = Situated::new(Arc::clone(&world), prior, settings()).unwrap();
         let states = world.outline().map_or(0, |outline| outline.size());
-        println!("{sort:?}: made in {:?}, outline of {states}", process_cpu() - start);
+        println!(
+            "{sort:?}: made in {:?}, outline of {states}",
+            process_cpu() - start
+        );
         for states in [6, 12] {
             let mut random = draw::random(states as u64);
             let (mut found, mut searched, mut none) = (Vec::new(), Vec::new(), Vec::new());
@@ -101,33 +114,32 @@ fn witnesses_in_large_grids() {
                 assert!(!world.has_word(&silent));
                 none.push(process_cpu() - start);
             }
-            show(&format!("  {states} states, asked of the class"), &mut found);
+            show(
+                &format!("  {states} states, asked of the class"),
+                &mut found,
+            );
             show(&format!("  {states} states, searched"), &mut searched);
             show(&format!("  {states} states, none to be found"), &mut none);
         }
     }
 }
 
-/// Asks up to 40 questions about a drawn target.
-fn ask(world: &Arc<World>, states: usize, strategy: Strategy) -> Vec<Duration> {
+/// Asks up to so many questions about a drawn target.
+fn ask(world: &Arc<World>, states: usize, strategy: Strategy, most: u32) -> Vec<Duration> {
     let prior = Prior::none(world.alphabet());
     let target = of_size(world, states, &mut draw::random(states as u64));
     let target = Target::automaton("drawn", &target);
     let class = Situated::new(Arc::clone(world), prior.clone(), settings()).unwrap();
     let open = prior.open().clone();
-    let mut teacher = SituatedTeacher::new(
-        Arc::clone(world),
-        open,
-        &target,
-        TeacherSettings::default(),
-    );
+    let mut teacher =
+        SituatedTeacher::new(Arc::clone(world), open, &target, TeacherSettings::default());
     let config = Config {
         strategy,
         ..Config::default()
     };
     let mut learner = Learner::new(class, config, Vec::new());
     let mut times = Vec::new();
-    for number in 0..40 {
+    for number in 0..most {
         let start = process_cpu();
         let step = learner.next();
         times.push(process_cpu() - start);
@@ -165,9 +177,12 @@ fn questions_in_large_grids() {
     for sort in SORTS {
         let world = large(sort);
         for states in [4, 6] {
-            for strategy in [Strategy::Bayes, Strategy::Thesis] {
-                let mut times = ask(&world, states, strategy);
-                show(&format!("{sort:?} {states} states {strategy:?}"), &mut times);
+            for (strategy, most) in [(Strategy::Bayes, 10), (Strategy::Thesis, 40)] {
+                let mut times = ask(&world, states, strategy, most);
+                show(
+                    &format!("{sort:?} {states} states {strategy:?}"),
+                    &mut times,
+                );
             }
         }
     }

@@ -6,3 +6,6 @@ mod grid;
 mod large;
 mod learn;
 mod pool;
+mod prior;
+mod robot;
+mod situated;

@@ -10,7 +10,7 @@ use crate::world::World;
 /// The most words.
 const WORDS: usize = 1000;
 /// The most nodes of the tree; long words need many.
-const NODES: usize = 8000;
+const NODES: usize = 4000;
 /// If the world lists fewer words than this, the others are searched for.
 const SEARCHED: usize = 128;
 

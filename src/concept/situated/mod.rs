@@ -131,17 +131,23 @@ impl Situated {
         self.prior.settled(word).is_none() && self.world.is_feasible(word)
     }
 
-    /// The simplest open word, feasible or not, on which some other consistent
-    /// concept differs from this one, though nothing that can be shown tells the two
-    /// apart: what the world lacks. As of the last question; none if no such
-    /// concept was met.
+    /// What the world lacks: the simplest open word, feasible or not, about which
+    /// nothing that can be shown tells. Some other consistent concept differs from
+    /// this one there, or it has a symbol that nothing shows. As of the last
+    /// question; none if nothing of the kind was met.
     pub fn beyond(&self, hypothesis: &Dfa) -> Option<Word> {
         let others = self
             .merged
             .iter()
             .filter(|(stands, _)| stands == hypothesis);
-        others
-            .filter_map(|(stands, other)| self.open_difference(stands, other).shortest_accepted())
+        let differences = others.map(|(stands, other)| self.open_difference(stands, other));
+        let never_shown = self.learned.ignored();
+        let unseen = product(&never_shown, self.prior.open(), |ignored, open| {
+            ignored && open
+        });
+        let languages = differences.chain([unseen]);
+        languages
+            .filter_map(|language| language.shortest_accepted())
             .min()
     }
 
@@ -301,11 +307,8 @@ impl ConceptClass for Situated {
     /// from those it rejects.
     fn draw(&self, hypothesis: &Dfa, count: usize, random: &mut ChaCha8Rng) -> Vec<Word> {
         let open = self.prior.open();
-        let sides = [true, false].map(|label| {
-            product(hypothesis, open, |accepted, open| {
-                open && accepted == label
-            })
-        });
+        let sides = [true, false]
+            .map(|label| product(hypothesis, open, |accepted, open| open && accepted == label));
         let first: Vec<bool> = (0..count).map(|_| random.random()).collect();
         let wanted = first.iter().filter(|first| **first).count();
         let longest = longest(hypothesis);

@@ -30,9 +30,11 @@ impl Reduced {
         let mut asked = BTreeSet::new();
         for state in frame.reachable() {
             let mut symbols = alphabet.symbols();
-            asked.extend(symbols.by_ref().filter(|&symbol| {
-                live[frame.next(state, symbol).index()]
-            }));
+            asked.extend(
+                symbols
+                    .by_ref()
+                    .filter(|&symbol| live[frame.next(state, symbol).index()]),
+            );
         }
         let columns = columns(&alphabet, &asked);
         Self {
@@ -122,6 +124,15 @@ impl Reduced {
             concepts: spread.concepts.iter().map(lifted).collect(),
             ..spread
         })
+    }
+
+    /// The words with some symbol that does not matter.
+    pub(super) fn ignored(&self) -> Dfa {
+        let symbols = self.alphabet.symbols();
+        let row = symbols.map(|symbol| usize::from(!self.columns.contains(&symbol)));
+        let rows = [row.collect(), vec![1; self.alphabet.len()]];
+        Dfa::new(self.alphabet.clone(), 0, vec![false, true], &rows)
+            .expect("every state has a row, and every entry is a state")
     }
 
     /// The automaton over all symbols, which does not move on those that do not

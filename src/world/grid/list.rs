@@ -7,8 +7,8 @@ use automata::{Symbol, Word};
 
 use super::super::Listing;
 use super::super::machine::Machine;
-use super::path::Move;
 use super::Grid;
+use super::path::Move;
 
 /// The cells that a listing steps on, word by word and step by step, for each
 /// word wanted.

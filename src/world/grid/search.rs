@@ -28,7 +28,10 @@ impl Grid {
 
     /// The words of the language, simplest first: each is found by a search for the
     /// simplest that was not found before.
-    pub(in crate::world) fn words_in(&self, language: &Dfa) -> impl Iterator<Item = Word> + use<'_> {
+    pub(in crate::world) fn words_in(
+        &self,
+        language: &Dfa,
+    ) -> impl Iterator<Item = Word> + use<'_> {
         let mut rest = language.clone();
         std::iter::from_fn(move || {
             let word = self.find(&Machine::new(&rest))?.word;
@@ -178,7 +181,9 @@ impl Grid {
             }
             ways = longer;
         }
-        let least = ways.into_values().min_by(|one, other| one.key().cmp(&other.key()));
+        let least = ways
+            .into_values()
+            .min_by(|one, other| one.key().cmp(&other.key()));
         least.expect("every useful cell lies on a way from a start to a goal")
     }
 }
