@@ -11,6 +11,8 @@ use crate::world::World;
 const WORDS: usize = 1000;
 /// The most nodes of the tree; long words need many.
 const NODES: usize = 4000;
+/// So many of them tell most concepts apart.
+const SIGNED: usize = 192;
 /// If the world lists fewer words than this, the others are searched for.
 const SEARCHED: usize = 128;
 
@@ -92,12 +94,19 @@ impl Catalogue {
             .map(|(_, word)| word)
     }
 
-    /// The labels of all words, as bits.
+    /// The labels of the first words, as bits.
     pub(super) fn signature(&self, dfa: &Dfa) -> Vec<u64> {
-        let mut bits = vec![0; self.words.len().div_ceil(64)];
-        for (place, label) in self.labels(dfa).enumerate() {
+        let mut bits = vec![0; self.words.len().min(SIGNED).div_ceil(64)];
+        for (place, label) in self.labels(dfa).take(SIGNED).enumerate() {
             bits[place / 64] |= u64::from(label) << (place % 64);
         }
         bits
+    }
+
+    /// The first word on which the two differ.
+    pub(super) fn difference(&self, one: &Dfa, other: &Dfa) -> Option<&Word> {
+        let mut labels = self.labels(one).zip(self.labels(other));
+        let place = labels.position(|(one, other)| one != other)?;
+        self.words.get(place)
     }
 }

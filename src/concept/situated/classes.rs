@@ -15,10 +15,9 @@ const REMEMBERED: usize = 200_000;
 #[derive(Default)]
 pub(super) struct Classes {
     known: HashMap<Dfa, usize>,
-    /// The concepts with the same labels in the catalogue.
+    /// The concepts that the first words of the catalogue do not tell apart.
     groups: HashMap<Vec<u64>, Vec<Member>>,
-    /// Words beyond the catalogue that told some concepts apart: they are likely to
-    /// do so again.
+    /// Other words that told some concepts apart: they are likely to do so again.
     telling: Vec<Word>,
     count: usize,
 }

@@ -28,17 +28,20 @@ impl Situated {
         budget: &mut Budget,
     ) -> Result<Sample<Dfa>, Failure> {
         let mut wanted = count;
-        let mut round = 0;
-        let (mut concepts, complete) = loop {
-            let sample = self.learned.sample(wanted, seed, budget)?;
-            let all = sample.complete;
-            let merged = self.merge(sample.concepts.into_iter().map(|dfa| (dfa, 0.0)));
-            round += 1;
-            if all || merged.len() >= count || round > ROUNDS {
-                break (merged, all);
+        let mut found = self.one_round(wanted, seed, budget)?;
+        for _ in 0..ROUNDS {
+            if found.1 || found.0.len() >= count {
+                break;
             }
             wanted *= SPARE;
-        };
+            match self.one_round(wanted, seed, budget) {
+                Ok(more) => found = more,
+                // What is known already is good enough.
+                Err(Failure::OverBudget { .. }) => break,
+                Err(failure) => return Err(failure),
+            }
+        }
+        let (mut concepts, complete) = found;
         let complete = complete && concepts.len() <= count;
         if concepts.len() > count {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -54,6 +57,18 @@ impl Situated {
             concepts: concepts.into_iter().map(|(dfa, _)| dfa).collect(),
             complete,
         })
+    }
+
+    /// What is left of so many concepts, and whether these are all.
+    fn one_round(
+        &mut self,
+        wanted: usize,
+        seed: u64,
+        budget: &mut Budget,
+    ) -> Result<(Vec<(Dfa, f64)>, bool), Failure> {
+        let sample = self.learned.sample(wanted, seed, budget)?;
+        let unweighted = sample.concepts.into_iter().map(|dfa| (dfa, 0.0));
+        Ok((self.merge(unweighted), sample.complete))
     }
 
     pub(super) fn merge_spread(&mut self, spread: Spread<Dfa>) -> Spread<Dfa> {
@@ -108,11 +123,11 @@ impl Situated {
         class
     }
 
-    /// A feasible open word on which the two differ, where none of the catalogue
-    /// is one.
+    /// A feasible open word on which the two differ.
     fn separate(&self, one: &Dfa, other: &Dfa) -> Option<Word> {
-        if self.catalogue.is_complete() {
-            return None;
+        let listed = self.catalogue.difference(one, other);
+        if listed.is_some() || self.catalogue.is_complete() {
+            return listed.cloned();
         }
         let differ = super::product(one, other, |one, other| one != other);
         let framed = super::product(&differ, &self.frame, |differ, frame| differ && frame);
