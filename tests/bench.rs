@@ -125,6 +125,7 @@ fn contenders_are_told_what_their_names_say() {
     assert!(close(config("bayes", Some(2)).equivalence_cost, 8.0));
     assert!(close(config("bayes-eager", Some(2)).equivalence_cost, 4.0));
     assert!(config("bayes-robust", Some(2)).robust);
+    assert_eq!(config("exp4+", Some(8)).strategy, Strategy::Exp4Plus);
     assert_eq!(config("thesis", Some(8)).strategy, Strategy::Thesis);
     assert!(config("thesis", None).comparison_cost.is_infinite());
     assert_eq!(config("membership", Some(8)).strategy, Strategy::Membership);

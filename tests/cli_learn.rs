@@ -63,6 +63,20 @@ fn learns_and_tells() {
         "{}",
         people.stdout
     );
+
+    // One of something is one, and none are many.
+    let few = memrep(&folder, "learn --target tomita:6 --comparison-cost inf");
+    let asked = few.stdout.lines().nth(1).unwrap();
+    assert!(
+        asked.contains(", 0 comparisons, 1 equivalence query"),
+        "{asked}"
+    );
+    let plus = memrep(
+        &folder,
+        "learn --target tomita:6 --strategy exp4+ --format json",
+    );
+    assert_eq!(plus.status, Some(0));
+    assert_eq!(self::summary(&plus)["strategy"], "exp4+");
 }
 
 /// Every question is traced in the form that scripts rely on, and a seed gives
@@ -378,7 +392,7 @@ fn bad_input_is_told() {
         ),
         (
             "learn --target robot --strategy best",
-            "possible values: bayes, thesis",
+            "possible values: bayes, exp4+, thesis",
         ),
         (
             "learn --target robot --save no/such/folder.json",

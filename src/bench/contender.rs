@@ -53,6 +53,14 @@ pub const CONTENDERS: &[Contender] = &[
         },
     },
     Contender {
+        key: "exp4+",
+        name: "exp4+",
+        about: "the posterior of `bayes`, and EXP4 with four experts over its best question of each kind",
+        clean: true,
+        noisy: false,
+        set: |config| config.strategy = Strategy::Exp4Plus,
+    },
+    Contender {
         key: BASE,
         name: "thesis",
         about: "Algorithms 4 to 6 of the dissertation as written",

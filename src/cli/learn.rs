@@ -3,7 +3,9 @@
 
 mod check;
 mod doubts;
+mod summary;
 mod trace;
+mod values;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,16 +14,15 @@ use std::time::Duration;
 use anyhow::Context as _;
 use automata::Dfa;
 use automata::format::json::{Document, Provenance};
-use clap::ValueEnum;
 use indicatif::ProgressBar;
-use serde::Serialize;
 
+use self::values::Promise;
 use super::files::{self, Content, Format};
-use super::output::{self, Output};
-use crate::bench::{Report, percentile, process_cpu, teach};
+use super::output::{Output, counted};
+use crate::bench::{process_cpu, teach};
 use crate::concept::DfaClass;
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Config, Conformance, Doubts, EQUIVALENCE_COST, Learner, Progress, Strategy};
+use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, Target, TargetError, TeacherSettings,
 };
@@ -57,14 +58,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "T")]
     target: String,
     /// The cost of a membership query, positive.
-    #[arg(long, value_name = "A", default_value = "4", allow_negative_numbers = true, value_parser = finite_cost)]
+    #[arg(long, value_name = "A", default_value = "4", allow_negative_numbers = true, value_parser = values::finite_cost)]
     membership_cost: f64,
     /// The cost of a comparison, positive; `inf`: never ask one.
-    #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = cost)]
+    #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = values::cost)]
     comparison_cost: f64,
     /// The cost of an equivalence query, 0 or more; four times a membership query
-    /// if not given. Strategy bayes shows an automaton when that is worth it.
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = cost_or_nothing)]
+    /// if not given. Strategies bayes and exp4+ show an automaton when that is worth it.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = values::cost_or_nothing)]
     equivalence_cost: Option<f64>,
     /// How questions are chosen.
     #[arg(long, value_name = "S", default_value = "bayes")]
@@ -76,7 +77,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "KIND", default_value = "shortest")]
     counterexample: Counterexamples,
     /// The share of membership answers and comparisons that are wrong.
-    #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = rate)]
+    #[arg(long, value_name = "RATE", default_value = "0", allow_negative_numbers = true, value_parser = values::rate)]
     error_rate: f64,
     /// Take answers for evidence and not for facts: any may be wrong, how many
     /// are is learned on the way, and what seems wrong is asked in other words.
@@ -118,89 +119,6 @@ pub(crate) struct Args {
     /// How to print.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Output,
-}
-
-/// A cost that may be infinite.
-fn cost(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(cost) if cost > 0.0 => Ok(cost),
-        _ => Err("give a positive number, or `inf`".to_owned()),
-    }
-}
-
-fn finite_cost(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(cost) if cost > 0.0 && cost.is_finite() => Ok(cost),
-        _ => Err("give a positive number".to_owned()),
-    }
-}
-
-fn cost_or_nothing(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(cost) if cost >= 0.0 && cost.is_finite() => Ok(cost),
-        _ => Err("give a number, 0 or more".to_owned()),
-    }
-}
-
-/// What a teacher may promise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Promise {
-    /// No counterexample could be shorter.
-    Shortest,
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(rate) if (0.0..=1.0).contains(&rate) => Ok(rate),
-        _ => Err("give a number from 0 to 1".to_owned()),
-    }
-}
-
-impl ValueEnum for Strategy {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Bayes, Self::Thesis, Self::Membership]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(match self {
-            Self::Bayes => clap::builder::PossibleValue::new("bayes")
-                .help("the question of any kind that is worth most for its cost"),
-            Self::Thesis => clap::builder::PossibleValue::new("thesis")
-                .help("Algorithms 4 to 6 of the dissertation's chapter 5"),
-            Self::Membership => {
-                clap::builder::PossibleValue::new("membership").help("the same without comparisons")
-            }
-        })
-    }
-}
-
-impl ValueEnum for Order {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Ordered, Self::Random]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(match self {
-            Self::Ordered => clap::builder::PossibleValue::new("ordered")
-                .help("by prefixes and extensions, as for Tomita's languages in chapter 5"),
-            Self::Random => clap::builder::PossibleValue::new("random")
-                .help("fixed and random, a tenth of the pairs incomparable"),
-        })
-    }
-}
-
-impl ValueEnum for Counterexamples {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Shortest, Self::Random]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(match self {
-            Self::Shortest => clap::builder::PossibleValue::new("shortest").help("a shortest word"),
-            Self::Random => clap::builder::PossibleValue::new("random")
-                .help("any word of a random length, mostly up to 10"),
-        })
-    }
 }
 
 /// Runs the command.
@@ -263,11 +181,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.max_questions,
         process_cpu,
         |asked| {
+            let questions = |number| counted(number, "question", "questions");
             progress.set_message(match asked.check {
-                None => format!("{} questions asked", asked.number),
+                None => format!("{} asked", questions(asked.number)),
                 Some(check) => format!(
-                    "{} questions asked; {} of {} random words judged",
-                    asked.number, check.judged, check.needed
+                    "{} asked; {} of {} random words judged",
+                    questions(asked.number),
+                    check.judged,
+                    check.needed
                 ),
             });
             if args.trace && printed.is_ok() {
@@ -286,7 +207,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, &target, args.seed, learned)?;
     }
-    tell(args, &target, &report, learner.doubts())?;
+    summary::tell(args, &target, &report, learner.doubts())?;
     let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
     Ok(if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
@@ -331,132 +252,4 @@ fn save(path: &Path, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Resul
         .map_or(Ok(Format::Json), |_| Format::choose(None, path, "--save"))?;
     let text = files::render(&Content::Automaton(document), format)?;
     files::write(path, &text).context("the learned automaton was not saved")
-}
-
-/// What `--format json` prints last.
-#[derive(Serialize)]
-struct Summary<'a> {
-    target: &'a str,
-    strategy: Strategy,
-    seed: u64,
-    equivalent: bool,
-    /// The number of states learned.
-    states: Option<usize>,
-    membership: u32,
-    comparison: u32,
-    equivalence: u32,
-    cost: f64,
-    dropped: u32,
-    /// The share of the answers that seem wrong, and which these are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    wrong: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    doubted: Option<Vec<u32>>,
-    hurried: u32,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    conformance: Option<check::Checked>,
-    question_ms: Milliseconds,
-    cpu_s: f64,
-}
-
-/// The CPU time that choosing a question took.
-#[derive(Serialize)]
-struct Milliseconds {
-    p50: f64,
-    p95: f64,
-    max: f64,
-}
-
-impl Milliseconds {
-    fn of(times: &[Duration]) -> Self {
-        let at = |percent| rounded(percentile(times, percent).as_secs_f64() * 1e3);
-        Self {
-            p50: at(50),
-            p95: at(95),
-            max: at(100),
-        }
-    }
-}
-
-/// To three places, as more would be noise.
-fn rounded(number: f64) -> f64 {
-    (number * 1e3).round() / 1e3
-}
-
-fn tell(
-    args: &Args,
-    target: &Target,
-    report: &Report<Dfa>,
-    doubts: Option<&Doubts>,
-) -> anyhow::Result<()> {
-    let counts = report.counts;
-    let times = Milliseconds::of(&report.question_times);
-    if args.format == Output::Json {
-        let summary = Summary {
-            target: target.name(),
-            strategy: args.strategy,
-            seed: args.seed,
-            equivalent: report.learned.is_some(),
-            states: report.learned.as_ref().map(Dfa::size),
-            membership: counts.membership,
-            comparison: counts.comparison,
-            equivalence: counts.equivalence,
-            cost: report.cost,
-            dropped: report.dropped,
-            wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
-            doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
-            hurried: report.hurried,
-            conformance: (report.check.as_ref())
-                .map(|check| check::Checked::of(check, counts.conformance)),
-            question_ms: times,
-            cpu_s: rounded(report.cpu.as_secs_f64()),
-        };
-        return output::line(serde_json::to_string(&summary)?);
-    }
-    match &report.learned {
-        Some(learned) => output::line(format!(
-            "learned: {} with {} states",
-            target.name(),
-            learned.size()
-        ))?,
-        None => output::line(format!(
-            "not learned: {} within {} questions; allow more by `--max-questions`",
-            target.name(),
-            args.max_questions
-        ))?,
-    }
-    if let Some(check) = &report.check {
-        check::tell(check, args.max_questions)?;
-    }
-    let judged = match (args.conformance, counts.conformance) {
-        (None, _) => String::new(),
-        (Some(_), 1) => ", 1 judgement to check the result".to_owned(),
-        (Some(_), judged) => format!(", {judged} judgements to check the result"),
-    };
-    output::line(format!(
-        "asked: {} membership queries, {} comparisons, {} equivalence queries{judged}",
-        counts.membership, counts.comparison, counts.equivalence
-    ))?;
-    output::line(format!(
-        "cost: {} (equivalence queries{} not counted)",
-        report.cost,
-        if args.conformance.is_some() {
-            " and the check"
-        } else {
-            ""
-        }
-    ))?;
-    if report.dropped > 0 {
-        output::line(format!(
-            "dropped: {} answers that contradicted others",
-            report.dropped
-        ))?;
-    }
-    if let Some(doubts) = doubts {
-        doubts::tell(doubts)?;
-    }
-    output::line(format!(
-        "CPU time: {} ms a question (median; 95 % within {} ms)",
-        times.p50, times.p95
-    ))
 }

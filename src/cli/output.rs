@@ -1,6 +1,7 @@
 //! What commands print on the standard output: words for people, or one JSON
 //! object a line for programs.
 
+use std::fmt::Display;
 use std::io::Write as _;
 
 use anyhow::Context as _;
@@ -22,8 +23,18 @@ pub(crate) enum Output {
 /// Prints a line.
 ///
 /// Unlike `println!` it reports a closed pipe instead of panicking.
-pub(crate) fn line(text: impl std::fmt::Display) -> anyhow::Result<()> {
+pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
     writeln!(std::io::stdout(), "{text}").context("the standard output: cannot write to it")
+}
+
+/// So many of something, for people: "1 state", "2 states".
+pub(crate) fn counted(
+    number: impl Copy + Display + PartialEq + From<u8>,
+    one: &str,
+    more: &str,
+) -> String {
+    let name = if number == 1.into() { one } else { more };
+    format!("{number} {name}")
 }
 
 /// A word for people: its symbols with spaces between.

@@ -1,6 +1,10 @@
 //! A partial automaton that grows edge by edge, with everything that follows
 //! from it, and a trail to undo it.
 
+mod outputs;
+#[cfg(test)]
+mod tests;
+
 use super::instance::{Instance, Node};
 
 /// No state, no node, or no edge.
@@ -169,15 +173,6 @@ impl<'a> Partial<'a> {
         &self.delta[..(self.used * self.symbols) as usize]
     }
 
-    /// The output of a used state, where it is decided.
-    pub(crate) fn output(&self, state: u32) -> Option<bool> {
-        match self.output[state as usize] {
-            REJECT => Some(false),
-            ACCEPT => Some(true),
-            _ => None,
-        }
-    }
-
     /// The number of edges of used states that are not defined.
     pub(crate) fn open_edges(&self) -> usize {
         (self.used * self.symbols) as usize - self.edges.len()
@@ -187,21 +182,6 @@ impl<'a> Partial<'a> {
     pub(crate) fn first_open_edge(&self) -> Option<u32> {
         let place = self.delta().iter().position(|&target| target == NONE);
         place.map(|edge| edge as u32)
-    }
-
-    /// Decides the output of a used state; `false` if a fact is violated, and
-    /// then it must be undone.
-    pub(crate) fn assume(&mut self, state: u32, accepting: bool) -> bool {
-        let consistent = self.decide(state, u8::from(accepting));
-        self.flips.clear();
-        consistent
-    }
-
-    /// The implications between outputs that are not decided: if the first
-    /// accepts, so does the second.
-    pub(crate) fn open_implications(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let open = |state: u32| self.output[state as usize] == OPEN;
-        (self.implied.iter().copied()).filter(move |&(source, target)| open(source) && open(target))
     }
 
     /// The undefined edge that is likely to fail first: most waits at it for
@@ -343,142 +323,5 @@ impl<'a> Partial<'a> {
             }
         }
         compatible
-    }
-
-    /// Sets a state's output and what it implies.
-    fn decide(&mut self, state: u32, output: u8) -> bool {
-        let known = self.output[state as usize];
-        if known != OPEN {
-            return known == output;
-        }
-        self.output[state as usize] = output;
-        self.outputs.push(state);
-        self.flips.push(state);
-        while let Some(state) = self.flips.pop() {
-            let mut link = if output == ACCEPT {
-                self.newest[state as usize].0
-            } else {
-                self.newest[state as usize].1
-            };
-            while link != NONE {
-                let (source, target) = self.implied[link as usize];
-                let (same_source, same_target) = self.before[link as usize];
-                let reached = if output == ACCEPT {
-                    link = same_source;
-                    target
-                } else {
-                    link = same_target;
-                    source
-                };
-                match self.output[reached as usize] {
-                    OPEN => {
-                        self.output[reached as usize] = output;
-                        self.outputs.push(reached);
-                        self.flips.push(reached);
-                    }
-                    known if known == output => {}
-                    _ => return false,
-                }
-            }
-        }
-        true
-    }
-
-    /// Adds that `source`'s acceptance implies `target`'s.
-    fn imply(&mut self, source: u32, target: u32) -> bool {
-        match (self.output[source as usize], self.output[target as usize]) {
-            (REJECT, _) | (_, ACCEPT) => true,
-            (ACCEPT, _) => self.decide(target, ACCEPT),
-            (_, REJECT) => self.decide(source, REJECT),
-            _ => {
-                let link = self.implied.len() as u32;
-                self.implied.push((source, target));
-                self.before.push((
-                    self.newest[source as usize].0,
-                    self.newest[target as usize].1,
-                ));
-                self.newest[source as usize].0 = link;
-                self.newest[target as usize].1 = link;
-                true
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use automata::{Alphabet, Symbol, Word};
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::evidence::Fact;
-    use crate::identify::problem::{FactId, Problem};
-
-    /// Everything but the room that vectors keep.
-    fn snapshot(partial: &Partial<'_>) -> String {
-        // Nodes and edges that are out of use keep what they last held.
-        let waiting: Vec<Vec<Node>> = (partial.head.iter())
-            .map(|&head| {
-                let some = |node: Node| Some(node).filter(|&node| node != NONE);
-                std::iter::successors(some(head), |&node| some(partial.behind[node as usize]))
-                    .collect()
-            })
-            .collect();
-        let places = (&partial.delta, &partial.output, &partial.state, waiting);
-        let counts = (&partial.weight, &partial.labelled, &partial.beyond);
-        let outputs = (&partial.implied, &partial.before, &partial.newest);
-        let trails = (&partial.edges, &partial.placed, &partial.waits);
-        let work = (&partial.outputs, &partial.arrivals, &partial.flips);
-        format!(
-            "{} {places:?} {counts:?} {outputs:?} {trails:?} {work:?}",
-            partial.used
-        )
-    }
-
-    fn word() -> impl Strategy<Value = Word> {
-        proptest::collection::vec(0..2_usize, 0..6)
-            .prop_map(|symbols| symbols.into_iter().map(Symbol::new).collect())
-    }
-
-    fn fact() -> impl Strategy<Value = Fact<Word>> {
-        prop_oneof![
-            (word(), any::<bool>()).prop_map(|(atom, accepted)| Fact::Label { atom, accepted }),
-            (word(), word()).prop_map(|(worse, better)| Fact::Below { worse, better }),
-            (word(), word()).prop_map(|(first, second)| Fact::Equal { first, second }),
-        ]
-    }
-
-    proptest! {
-        /// Whatever was defined, and whether or not it was consistent, undoing
-        /// leaves nothing behind; and a glance never refuses what is possible.
-        #[test]
-        fn undoing_restores_everything(
-            facts in proptest::collection::vec(fact(), 0..12),
-            steps in proptest::collection::vec(0..4_u32, 0..8),
-        ) {
-            let mut problem = Problem::new(Alphabet::new(["a", "b"]).expect("two names"));
-            let standing: Vec<FactId> =
-                facts.iter().filter_map(|fact| problem.add(None, fact)).collect();
-            let Some(instance) = Instance::new(&problem, &standing) else { return Ok(()) };
-            let mut partial = Partial::new(&instance, 3);
-            let mut points = vec![(partial.mark(), snapshot(&partial))];
-            for step in steps {
-                let Some(edge) = partial.tightest() else { break };
-                let target = step.min(partial.used()).min(partial.limit() - 1);
-                let glance = target == partial.used() || partial.may_lead(edge, target);
-                let fits = partial.define(edge, target);
-                prop_assert!(glance || !fits);
-                if fits {
-                    points.push((partial.mark(), snapshot(&partial)));
-                } else if let Some((mark, before)) = points.last() {
-                    partial.undo(*mark);
-                    prop_assert_eq!(&snapshot(&partial), before);
-                }
-            }
-            for (mark, before) in points.into_iter().rev() {
-                partial.undo(mark);
-                prop_assert_eq!(snapshot(&partial), before);
-            }
-        }
     }
 }

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::exp4::{COMPARISON, MEMBERSHIP};
-use super::experts::{Losses, Round};
+use super::experts::{Losses, PosteriorAdvice, Round};
 use super::selection::{CONCEPTS, Candidates, Compare, Judge, select};
 use super::{Learner, Question, Step, Strategy};
 use crate::concept::{ConceptClass, Failure};
@@ -22,11 +22,14 @@ pub(super) type Move<C> = (
     Option<<C as ConceptClass>::Concept>,
 );
 
+/// A question of a concept class.
+type Asked<C> = Question<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>;
+
 /// A question, and the bandit's round in which it was chosen.
-type Chosen<C> = (
-    Question<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
-    Option<Round>,
-);
+pub(super) type Chosen<C> = (Asked<C>, Option<Round>);
+
+/// A question that the bandit may choose, and the losses of its answers.
+pub(super) type Arm<C> = (Asked<C>, Losses);
 
 impl<C: ConceptClass> Learner<C> {
     /// The next move, by Algorithm 4.
@@ -44,7 +47,7 @@ impl<C: ConceptClass> Learner<C> {
             self.look_back(&hypothesis);
             return (step, Some(hypothesis));
         }
-        if self.config.strategy == Strategy::Bayes {
+        if self.config.strategy.has_posterior() {
             return self.weigh();
         }
         self.learn_by_elimination()
@@ -95,7 +98,7 @@ impl<C: ConceptClass> Learner<C> {
         for psi in pairs {
             let candidates = self.candidates(concepts, psi);
             if candidates.membership.is_some() || candidates.comparison.is_some() {
-                return self.pull(candidates, random);
+                return self.bet(candidates, random);
             }
         }
         None
@@ -107,12 +110,12 @@ impl<C: ConceptClass> Learner<C> {
     }
 
     /// Whether comparisons are asked at all.
-    fn compares(&self) -> bool {
+    pub(super) fn compares(&self) -> bool {
         self.config.strategy != Strategy::Membership && self.config.comparison_cost.is_finite()
     }
 
     /// Algorithm 5: lets the bandit choose between the candidates.
-    fn pull(&self, candidates: Candidates<C::Atom>, random: &mut ChaCha8Rng) -> Option<Chosen<C>> {
+    fn bet(&self, candidates: Candidates<C::Atom>, random: &mut ChaCha8Rng) -> Option<Chosen<C>> {
         let config = &self.config;
         // Which of two atoms is shown first is drawn, so that the place says
         // nothing and a habit of choosing the first does no harm.
@@ -138,25 +141,30 @@ impl<C: ConceptClass> Learner<C> {
             } else {
                 compare.mirrored()
             };
-            let losses = Losses::of_comparison(config, left_better, right_better, equal);
+            // What cannot be compared refutes nothing.
+            let shares = [left_better, right_better, equal, 1.0];
+            let losses = Losses::of_comparison(config, shares);
             let (first, second) = (left, right);
             (Question::Comparison { first, second }, losses)
         });
+        self.pull([membership, comparison], None, random)
+    }
+
+    /// Lets the bandit choose between a membership query and a comparison; where
+    /// no comparisons are asked, there is nothing to choose.
+    pub(super) fn pull(
+        &self,
+        mut arms: [Option<Arm<C>>; 2],
+        posterior: Option<PosteriorAdvice>,
+        random: &mut ChaCha8Rng,
+    ) -> Option<Chosen<C>> {
         if !self.compares() {
+            let membership = arms[MEMBERSHIP].take();
             return membership.map(|(question, _)| (question, None));
         }
-        let mut arms = [membership, comparison];
-        let losses = [MEMBERSHIP, COMPARISON].map(|arm| arms[arm].as_ref().map(|(_, l)| l));
-        let (advice, probabilities) = self.bandit.advise(losses);
-        let drawn = usize::from(random.random::<f64>() >= probabilities[MEMBERSHIP]);
-        let (question, losses) = arms[drawn].take().or_else(|| arms[1 - drawn].take())?;
-        let [pessimistic, historical] = advice;
-        let round = Round {
-            pessimistic,
-            historical,
-            probabilities,
-            losses,
-        };
+        let losses = [&arms[MEMBERSHIP], &arms[COMPARISON]].map(|arm| Some(arm.as_ref()?.1));
+        let round = self.bandit.pull(losses, posterior, random.random())?;
+        let (question, _) = arms[round.losses.arm()].take()?;
         Some((question, Some(round)))
     }
 

@@ -11,10 +11,22 @@ pub enum Strategy {
     /// A posterior over concepts of several sizes, and the question that is
     /// worth most for its cost.
     Bayes,
+    /// The same posterior, and EXP4 over its best question of each kind with two
+    /// more experts, who know what the posterior expects of these.
+    #[serde(rename = "exp4+")]
+    Exp4Plus,
     /// Algorithms 4 to 6 as written.
     Thesis,
     /// The same without comparisons.
     Membership,
+}
+
+impl Strategy {
+    /// Whether the likeliest concept of several sizes is shown when that is worth
+    /// it, and not the last of the smallest size.
+    pub(super) fn has_posterior(self) -> bool {
+        matches!(self, Self::Bayes | Self::Exp4Plus)
+    }
 }
 
 /// What a learner is told once, at its start.
@@ -27,12 +39,14 @@ pub struct Config {
     /// The cost `b` of a comparison (Eq. 5.2), positive; infinite: never asked.
     pub comparison_cost: f64,
     /// The cost of an equivalence query, zero or more and finite. Only
-    /// [`Strategy::Bayes`] weighs it; the others ask when one concept is left.
+    /// [`Strategy::Bayes`] and [`Strategy::Exp4Plus`] weigh it; the others ask when
+    /// one concept is left.
     pub equivalence_cost: f64,
     /// Whether the teacher promises that no counterexample could be shorter, so
     /// that every simpler atom has the label that the hypothesis gives it.
     pub shortest_counterexamples: bool,
-    /// Whether answers may be wrong, so that they are evidence and no facts.
+    /// Whether answers may be wrong, so that they are evidence and no facts; only
+    /// [`Strategy::Bayes`] can do that.
     pub robust: bool,
     /// What is to be claimed at the end; none: the teacher's agreement is enough.
     #[serde(default)]

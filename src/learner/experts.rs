@@ -1,10 +1,10 @@
-//! Losses (Eq. 5.3), and the two experts who advise on them: one fears the
-//! worst answer, the other remembers what each kind of question came to.
+//! Losses (Eq. 5.3), and the experts: one fears the worst answer, one remembers
+//! what each kind of question came to, and two know what the posterior expects.
 
 use serde::{Deserialize, Serialize};
 
-use super::exp4::{Advice, Arms, COMPARISON, Exp4, MEMBERSHIP, softmax};
-use super::{Config, Reply};
+use super::exp4::{Arms, COMPARISON, Exp4, MEMBERSHIP, softmax};
+use super::{Config, Reply, Strategy};
 use crate::evidence::Comparison;
 
 /// The temperature of the experts' softmax, in units of loss. It makes the better
@@ -18,9 +18,14 @@ use crate::evidence::Comparison;
 /// kind. In between, the tables' trade-off appears; the value was picked by it.
 const TEMPERATURE: f64 = 0.25;
 
+/// The temperature of the informed expert's softmax, as a share of the larger
+/// worth. An arm that is worth half as much for its cost is pulled once in eight
+/// times, whatever the unit of costs and however little is left to learn.
+const KEENNESS: f64 = 0.25;
+
 /// The loss that each answer to a question would mean: the share of the
-/// concepts that it leaves consistent, times the question's cost, divided by
-/// the larger of the costs (Eq. 5.3). In `[0, 1]`.
+/// concepts that it leaves, times the question's cost, divided by the larger of
+/// the costs (Eq. 5.3). In `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Losses {
@@ -39,7 +44,8 @@ pub enum Losses {
         second: f64,
         /// If both are equal.
         equal: f64,
-        /// If they cannot be compared: nothing was learned, and the cost paid.
+        /// If they cannot be compared: nothing that refutes anything was learned,
+        /// and the cost paid.
         incomparable: f64,
     },
 }
@@ -54,14 +60,16 @@ impl Losses {
         }
     }
 
-    /// The losses of a comparison that would leave these shares.
-    pub(super) fn of_comparison(config: &Config, first: f64, second: f64, equal: f64) -> Self {
+    /// The losses of a comparison whose answers `first`, `second`, `equal` and
+    /// `incomparable` would leave these shares.
+    pub(super) fn of_comparison(config: &Config, shares: [f64; 4]) -> Self {
         let price = price(config, config.comparison_cost);
+        let [first, second, equal, incomparable] = shares.map(|share| price * share);
         Self::Comparison {
-            first: price * first,
-            second: price * second,
-            equal: price * equal,
-            incomparable: price,
+            first,
+            second,
+            equal,
+            incomparable,
         }
     }
 
@@ -98,8 +106,8 @@ impl Losses {
         }
     }
 
-    /// The worst loss. That of an incomparable pair is left out: it is always
-    /// the whole cost, and would hide every difference between pairs.
+    /// The worst loss. That of an incomparable pair is left out: it is the whole
+    /// cost or nearly so, and would hide every difference between pairs.
     pub(super) fn worst(&self) -> f64 {
         match self {
             Self::Membership { accept, reject } => accept.max(*reject),
@@ -134,14 +142,44 @@ pub struct Round {
     pub pessimistic: Arms,
     /// The same of the historical expert.
     pub historical: Arms,
+    /// The same of the experts who know the posterior; none where there was no
+    /// posterior or nobody to know it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<PosteriorAdvice>,
     /// The probabilities with which the arms were pulled.
     pub probabilities: Arms,
     /// The loss that each answer to the chosen question means.
     pub losses: Losses,
 }
 
+/// What the two experts of strategy `exp4+` advise, who know how much the answer
+/// to each question is expected to tell.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PosteriorAdvice {
+    /// The informed expert's: the more an arm is worth for its cost, the more
+    /// probable.
+    pub informed: Arms,
+    /// The steadfast expert's: always the arm that is worth more.
+    pub steadfast: Arms,
+}
+
+impl PosteriorAdvice {
+    /// On two arms that are worth so much for their cost (none for an arm that is
+    /// not on offer), the better of which is known.
+    pub(super) fn new(rates: [Option<f64>; 2], better: usize) -> Self {
+        let largest = rates.iter().flatten().copied().fold(0.0, f64::max);
+        let keen = |rate: f64| rate / largest / KEENNESS;
+        let mut steadfast = [0.0; 2];
+        steadfast[better] = 1.0;
+        Self {
+            informed: softmax(rates.map(|rate| rate.map_or(f64::NEG_INFINITY, keen))),
+            steadfast,
+        }
+    }
+}
+
 /// The experts' memory and the bandit's weights: a fold over rounds.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bandit {
     exp4: Exp4,
     /// The sum of the losses that each arm incurred, and their number.
@@ -149,11 +187,28 @@ pub(super) struct Bandit {
 }
 
 impl Bandit {
-    /// What the experts advise on these arms, given the losses of their answers
-    /// (none for an arm that is not on offer), and the probabilities with which
-    /// the arms are to be pulled.
-    pub(super) fn advise(&self, arms: [Option<&Losses>; 2]) -> (Advice, Arms) {
-        let worst = arms.map(|arm| arm.map(Losses::worst));
+    /// Before the first round.
+    pub(super) fn new(strategy: Strategy) -> Self {
+        let experts = match strategy {
+            Strategy::Exp4Plus => 4,
+            Strategy::Bayes | Strategy::Thesis | Strategy::Membership => 2,
+        };
+        Self {
+            exp4: Exp4::new(experts),
+            incurred: [(0.0, 0); 2],
+        }
+    }
+
+    /// The round in which one of the arms is pulled, given the losses of their
+    /// answers (none for an arm that is not on offer) and a number drawn
+    /// uniformly from 0 to 1; none if nothing is on offer.
+    pub(super) fn pull(
+        &self,
+        arms: [Option<Losses>; 2],
+        posterior: Option<PosteriorAdvice>,
+        drawn: f64,
+    ) -> Option<Round> {
+        let worst = arms.map(|arm| arm.as_ref().map(Losses::worst));
         let mean: [Option<f64>; 2] = std::array::from_fn(|arm| {
             // An arm that was never pulled has no history: its worst loss is
             // all that is known of it.
@@ -166,10 +221,18 @@ impl Bandit {
                 }
             })
         });
-        let advice = [advice(worst), advice(mean)];
+        let (pessimistic, historical) = (advice(worst), advice(mean));
+        let advice = all(pessimistic, historical, posterior);
         let offered = arms.map(|arm| arm.is_some());
         let probabilities = self.exp4.probabilities(&advice, offered);
-        (advice, probabilities)
+        let arm = usize::from(drawn >= probabilities[MEMBERSHIP]);
+        Some(Round {
+            pessimistic,
+            historical,
+            posterior,
+            probabilities,
+            losses: arms[arm].or(arms[1 - arm])?,
+        })
     }
 
     /// Completes a round.
@@ -182,11 +245,24 @@ impl Bandit {
         if round.probabilities[arm].is_nan() || round.probabilities[arm] <= 0.0 {
             return;
         }
-        let advice = [round.pessimistic, round.historical];
+        let advice = all(round.pessimistic, round.historical, round.posterior);
         self.exp4.update(&advice, round.probabilities, arm, loss);
         self.incurred[arm].0 += loss;
         self.incurred[arm].1 += 1;
     }
+}
+
+/// The advice of all who gave any, in the order of the experts.
+fn all(pessimistic: Arms, historical: Arms, posterior: Option<PosteriorAdvice>) -> Vec<Arms> {
+    let mut advice = vec![pessimistic, historical];
+    if let Some(PosteriorAdvice {
+        informed,
+        steadfast,
+    }) = posterior
+    {
+        advice.extend([informed, steadfast]);
+    }
+    advice
 }
 
 /// The softmax of the losses with their sign turned, so that a small loss has a

@@ -23,7 +23,7 @@ use self::conformance::Check;
 pub use self::conformance::{BATCH, Claim, Conformance, ConformanceError, Progress};
 pub use self::dialogue::{Counts, Entry, Question, Reply, ReplyError, Step};
 use self::experts::Bandit;
-pub use self::experts::{Losses, Round};
+pub use self::experts::{Losses, PosteriorAdvice, Round};
 use self::known::Known;
 use crate::concept::ConceptClass;
 use crate::evidence::{AnswerId, Fact};
@@ -58,11 +58,11 @@ impl<C: ConceptClass> Learner<C> {
         }
         let mut learner = Self {
             class,
+            bandit: Bandit::new(config.strategy),
             config,
             given: known,
             entries: Vec::new(),
             evidence: Known::default(),
-            bandit: Bandit::default(),
             next: None,
             simplest: None,
             doubts: None,
@@ -212,7 +212,7 @@ impl<C: ConceptClass> Learner<C> {
     fn fold(&mut self) {
         let doubting = self.doubts_answers();
         self.evidence = Known::default();
-        self.bandit = Bandit::default();
+        self.bandit = Bandit::new(self.config.strategy);
         for fact in &self.given {
             self.evidence.add(None, fact);
         }

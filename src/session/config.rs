@@ -71,7 +71,8 @@ impl Setup {
             Some(value) => serde_json::from_value(value.clone()).map_err(|_| {
                 Malformed::new(
                     "strategy",
-                    "this strategy is unknown: give `\"bayes\"`, `\"thesis\"` or `\"membership\"`",
+                    "this strategy is unknown: give `\"bayes\"`, `\"exp4+\"`, `\"thesis\"` or \
+                     `\"membership\"`",
                 )
             })?,
         };
@@ -158,6 +159,20 @@ mod tests {
         let text = serde_json::to_string(&setup).unwrap();
         assert!(text.contains("\"inf\""), "{text}");
         assert_eq!(setup, serde_json::from_str(&text).unwrap());
+    }
+
+    #[test]
+    fn every_strategy_has_a_name() {
+        for (name, strategy) in [
+            ("bayes", Strategy::Bayes),
+            ("exp4+", Strategy::Exp4Plus),
+            ("thesis", Strategy::Thesis),
+            ("membership", Strategy::Membership),
+        ] {
+            let setup = read(&json!({"strategy": name})).unwrap();
+            assert_eq!(setup.strategy, strategy);
+            assert_eq!(serde_json::to_value(&setup).unwrap()["strategy"], name);
+        }
     }
 
     #[test]

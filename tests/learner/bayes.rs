@@ -2,15 +2,16 @@
 //! implied, and is a fold like the others.
 
 use memrep::bench::{process_cpu, teach};
-use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteConcept};
+use memrep::concept::{DfaClass, FiniteConcept};
 use memrep::evidence::AnswerId;
 use memrep::identify::{EngineChoice, Settings};
-use memrep::learner::{Config, Entry, Learner, Question, Reply, Step, Strategy};
-use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
+use memrep::learner::{Config, Entry, Learner, Question, Step, Strategy};
+use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, TeacherSettings};
 use proptest::prelude::*;
 
 use crate::brute::{Relation, class, holds};
 use crate::finite::{PREORDERS, WORLDS, config, outcomes, set_of};
+use crate::teacher::{TableTeacher, reply};
 
 fn automata(target: &Target) -> DfaClass {
     let settings = Settings {
@@ -45,30 +46,6 @@ fn every_target_is_learned() {
                 .unwrap_or_else(|| panic!("{name}, {order:?}"));
             assert_eq!(learned, target.dfa().canonical(), "{name}");
             assert_eq!(report.dropped, 0, "the teacher does not err");
-        }
-    }
-}
-
-/// The reply of one who teaches `target` under `order`.
-fn reply(
-    class: &FiniteClass,
-    target: FiniteConcept,
-    order: Relation,
-    question: &Question<FiniteAtom, FiniteConcept>,
-) -> Reply<FiniteAtom> {
-    match question {
-        Question::Membership { atom } if class.contains(&target, atom) => Reply::Accept,
-        Question::Membership { .. } => Reply::Reject,
-        Question::Comparison { first, second } => Reply::Compared(order.compare(*first, *second)),
-        Question::Equivalence { hypothesis } => {
-            let wrong = set_of(class, *hypothesis) ^ set_of(class, target);
-            if wrong == 0 {
-                Reply::Correct
-            } else {
-                let atom = FiniteAtom(wrong.trailing_zeros());
-                let label = class.contains(&target, &atom);
-                Reply::Counterexample { atom, label }
-            }
         }
     }
 }
@@ -113,7 +90,7 @@ proptest! {
                 });
                 prop_assert!(possible.count() > 1, "{:?} is implied by {:?}", question, facts);
             }
-            let reply = reply(&class, target, order, &question);
+            let reply = reply(&mut TableTeacher::new(&class, target, order), &question);
             learner.record(AnswerId(number), question, round, reply).expect("it fits");
             facts.extend(learner.entries().last().and_then(Entry::fact));
         }
@@ -140,17 +117,7 @@ fn it_is_a_fold() {
         let Step::Ask { question, .. } = step else {
             return;
         };
-        let reply = match &question {
-            Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            Question::Comparison { first, second } => {
-                Reply::Compared(teacher.comparison(first, second))
-            }
-            Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-                Some((atom, label)) => Reply::Counterexample { atom, label },
-                None => Reply::Correct,
-            },
-        };
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, None, reply)
             .unwrap();

@@ -9,12 +9,13 @@ use memrep::concept::{ConceptClass, DfaClass};
 use memrep::evidence::AnswerId;
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Learner, Progress, Question, Reply, Step, Strategy};
-use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
+use memrep::oracle::{ScriptedTeacher, Target, TeacherSettings};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::claims::{checked, twenty};
 use crate::finite::config;
+use crate::teacher::reply;
 
 fn automata(target: &Target) -> DfaClass {
     let settings = Settings {
@@ -68,20 +69,6 @@ fn words_are_drawn_as_it_is_said() {
     assert_eq!(words.len(), 50);
 }
 
-fn truth(teacher: &mut ScriptedTeacher, question: &Question<Word, Dfa>) -> Reply<Word> {
-    match question {
-        Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-        Question::Membership { .. } => Reply::Reject,
-        Question::Comparison { first, second } => {
-            Reply::Compared(teacher.comparison(first, second))
-        }
-        Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-            Some((atom, label)) => Reply::Counterexample { atom, label },
-            None => Reply::Correct,
-        },
-    }
-}
-
 /// A learner that is in the check of Tomita 5, and the next number.
 fn in_check(target: &Target, config: &Config, judged: u32) -> (Learner<DfaClass>, u32) {
     let mut teacher = ScriptedTeacher::new(target, TeacherSettings::default());
@@ -100,7 +87,7 @@ fn in_check(target: &Target, config: &Config, judged: u32) -> (Learner<DfaClass>
         {
             return (learner, number);
         }
-        let reply = truth(&mut teacher, &question);
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, round, reply)
             .unwrap();
@@ -150,7 +137,7 @@ fn a_check_is_a_fold() {
         };
         let asked = |entry: &memrep::learner::Entry<Word, Dfa>| entry.question == question;
         assert!(!learner.entries().iter().any(asked), "{atom:?} again");
-        let reply = truth(&mut teacher, &question);
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, None, reply)
             .unwrap();
@@ -231,7 +218,7 @@ fn a_slip_is_mended() {
     let Step::Ask { question, .. } = before.0.clone() else {
         panic!("there is something to be judged");
     };
-    let wrong = match truth(&mut teacher, &question) {
+    let wrong = match reply(&mut teacher, &question) {
         Reply::Accept => Reply::Reject,
         _ => Reply::Accept,
     };

@@ -5,10 +5,11 @@ use std::sync::LazyLock;
 
 use memrep::concept::{ConceptClass, FiniteAtom, FiniteClass, FiniteConcept};
 use memrep::evidence::{AnswerId, Comparison, Fact};
-use memrep::learner::{Config, Learner, Question, Reply, Step, Strategy};
+use memrep::learner::{Config, Learner, Question, Step, Strategy};
 use proptest::prelude::*;
 
 use crate::brute::{ATOMS, Relation, class, holds, preorders, worlds};
+use crate::teacher::{TableTeacher, reply};
 
 pub(crate) static WORLDS: LazyLock<Vec<(Relation, u8)>> = LazyLock::new(worlds);
 pub(crate) static PREORDERS: LazyLock<Vec<Relation>> = LazyLock::new(preorders);
@@ -74,6 +75,7 @@ fn teach(class: &FiniteClass, target: FiniteConcept, order: Relation, config: Co
     let infinite = config.comparison_cost.is_infinite();
     let strategy = config.strategy;
     let mut learner = Learner::new(class.clone(), config, Vec::new());
+    let mut teacher = TableTeacher::new(class, target, order);
     let mut facts = Vec::new();
     for number in 0..CAP {
         let (question, round) = match learner.next() {
@@ -97,17 +99,9 @@ fn teach(class: &FiniteClass, target: FiniteConcept, order: Relation, config: Co
         if let Question::Comparison { .. } = question {
             assert!(strategy == Strategy::Thesis && !infinite);
         }
-        let reply = match &question {
+        match &question {
             Question::Equivalence { hypothesis } => {
                 assert_eq!(space, [*hypothesis], "the last of its size");
-                let wrong = set_of(class, *hypothesis) ^ set_of(class, target);
-                if wrong == 0 {
-                    Reply::Correct
-                } else {
-                    let atom = FiniteAtom(wrong.trailing_zeros());
-                    let label = class.contains(&target, &atom);
-                    Reply::Counterexample { atom, label }
-                }
             }
             question => {
                 let possible = outcomes(question)
@@ -128,16 +122,9 @@ fn teach(class: &FiniteClass, target: FiniteConcept, order: Relation, config: Co
                     version_space(class, &more) != space
                 });
                 assert!(useful, "{question:?} changes nothing after {facts:?}");
-                match question {
-                    Question::Membership { atom } if class.contains(&target, atom) => Reply::Accept,
-                    Question::Membership { .. } => Reply::Reject,
-                    Question::Comparison { first, second } => {
-                        Reply::Compared(order.compare(*first, *second))
-                    }
-                    Question::Equivalence { .. } => unreachable!("handled above"),
-                }
             }
-        };
+        }
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, round, reply)
             .expect("the reply fits");

@@ -5,13 +5,14 @@ use memrep::concept::{ConceptClass, DfaClass, FiniteClass, FiniteConcept};
 use memrep::evidence::{AnswerId, Comparison};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Entry, Learner, Question, Reply, Round, Step, Strategy};
-use memrep::oracle::{Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
+use memrep::oracle::{Order, ScriptedTeacher, Target, TeacherSettings};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::brute::class;
 use crate::finite::config;
+use crate::teacher::reply;
 
 /// Any reply that fits the question, true or not.
 fn any_reply(
@@ -129,17 +130,7 @@ fn automata_are_a_fold_too() {
         else {
             break;
         };
-        let reply = match &question {
-            Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            Question::Comparison { first, second } => {
-                Reply::Compared(teacher.comparison(first, second))
-            }
-            Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-                Some((atom, label)) => Reply::Counterexample { atom, label },
-                None => Reply::Correct,
-            },
-        };
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, round, reply)
             .unwrap();

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use memrep::bench::{process_cpu, teach};
-use memrep::concept::{ConceptClass, DfaClass, FiniteClass};
-use memrep::evidence::{AnswerId, Fact};
+use memrep::concept::{DfaClass, FiniteClass};
+use memrep::evidence::{AnswerId, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Learner, Question, Reply, Step, Strategy};
 use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
 
 use crate::finite::config;
+use crate::teacher::{TableTeacher, reply};
 
 fn automata(target: &Target) -> DfaClass {
     let settings = Settings {
@@ -29,6 +30,7 @@ fn without_budget_new_words_are_judged() {
         ..config(Strategy::Thesis, 0)
     };
     let mut learner = Learner::new(automata(&target), config, target.known().to_vec());
+    let mut teacher = ScriptedTeacher::new(&target, TeacherSettings::default());
     let mut seen = BTreeSet::new();
     for number in 0..40 {
         let Step::Ask {
@@ -39,27 +41,19 @@ fn without_budget_new_words_are_judged() {
         else {
             panic!("nothing was agreed on");
         };
-        let reply = match &question {
-            Question::Membership { atom } => {
+        let reply = reply(&mut teacher, &question);
+        match (&question, &reply) {
+            (Question::Membership { atom }, _) => {
                 assert!(hurried && seen.insert(atom.clone()), "{atom:?}");
                 assert!(!atom.is_empty(), "the empty word is known");
-                if target.dfa().accepts(atom) {
-                    Reply::Accept
-                } else {
-                    Reply::Reject
-                }
             }
-            Question::Comparison { .. } => panic!("{question:?} without candidates"),
             // The one automaton that needs no search.
-            Question::Equivalence { hypothesis } => {
+            (Question::Equivalence { hypothesis }, Reply::Counterexample { atom, .. }) => {
                 assert_eq!(hypothesis.size(), 1, "{hypothesis:?}");
-                let word = target.dfa().shortest_difference(hypothesis).unwrap();
-                let atom = word.expect("the target has more states");
-                let label = target.dfa().accepts(&atom);
                 seen.insert(atom.clone());
-                Reply::Counterexample { atom, label }
             }
-        };
+            _ => panic!("{question:?} without candidates"),
+        }
         learner
             .record(AnswerId(number), question, round, reply)
             .unwrap();
@@ -109,6 +103,12 @@ fn a_finite_universe_ends_without_budget() {
         ..config(Strategy::Thesis, 0)
     };
     let mut learner = Learner::new(class.clone(), config, Vec::new());
+    let order = |_, _| Comparison::Incomparable;
+    let mut teacher = TableTeacher {
+        class: &class,
+        target,
+        order,
+    };
     for number in 0..4 {
         let (question, round) = match learner.next() {
             Step::Ask {
@@ -120,11 +120,7 @@ fn a_finite_universe_ends_without_budget() {
             }
             Step::Conflict(conflict) => panic!("{conflict:?}"),
         };
-        let reply = match &question {
-            Question::Membership { atom } if class.contains(&target, atom) => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            _ => Reply::Correct,
-        };
+        let reply = reply(&mut teacher, &question);
         learner
             .record(AnswerId(number), question, round, reply)
             .unwrap();

@@ -8,11 +8,12 @@ use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteCon
 use memrep::evidence::{AnswerId, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Conformance, Entry, Learner, Question, Reply, Step, Strategy};
-use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
+use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, TeacherSettings};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::finite::config;
+use crate::teacher::{TableTeacher, reply};
 
 /// Whether any preorder and any set of atoms agree with the facts: the least
 /// preorder does if one does. Knows nothing of how the learner finds out.
@@ -237,17 +238,7 @@ fn over_automata(strategy: Strategy, sessions: u64, states: usize) {
             _ => Vec::new(),
         };
         let config = some_config(strategy, &mut random);
-        let answer = |question: &Question<Word, Dfa>| match question {
-            Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            Question::Comparison { first, second } => {
-                Reply::Compared(teacher.comparison(first, second))
-            }
-            Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-                Some((atom, label)) => Reply::Counterexample { atom, label },
-                None => Reply::Correct,
-            },
-        };
+        let answer = |question: &Question<Word, Dfa>| reply(&mut teacher, question);
         let is_target = |learned: &Dfa| learned.is_equivalent(target.dfa()) == Ok(true);
         asked += session(class, &config, &given, answer, is_target, &mut random);
     }
@@ -255,7 +246,7 @@ fn over_automata(strategy: Strategy, sessions: u64, states: usize) {
 }
 
 /// Up to thirty sets of ten atoms, with sizes from 1 to 4.
-fn some_class(random: &mut ChaCha8Rng) -> FiniteClass {
+pub(crate) fn some_class(random: &mut ChaCha8Rng) -> FiniteClass {
     let count = random.random_range(2..30);
     let mut sets: Vec<u16> = (0..count)
         .map(|_| random.random_range(0..1 << 10))
@@ -269,6 +260,37 @@ fn some_class(random: &mut ChaCha8Rng) -> FiniteClass {
     FiniteClass::new(10, columns).unwrap()
 }
 
+/// One chain, or two between which nothing can be compared; in each the accepted
+/// atoms are on top.
+pub(crate) fn some_order(
+    class: &FiniteClass,
+    target: FiniteConcept,
+    random: &mut ChaCha8Rng,
+) -> impl Fn(FiniteAtom, FiniteAtom) -> Comparison + use<> {
+    let strands = random.random_range(1..=2u32);
+    let places: Vec<(u32, bool, u32)> = (class.atoms())
+        .map(|atom| {
+            (
+                random.random_range(0..strands),
+                class.contains(&target, &atom),
+                random.random_range(0..3),
+            )
+        })
+        .collect();
+    move |first, second| {
+        let [one, other] = [first, second].map(|atom| places[atom.0 as usize]);
+        if one.0 != other.0 {
+            Comparison::Incomparable
+        } else if one == other {
+            Comparison::Equal
+        } else if one > other {
+            Comparison::First
+        } else {
+            Comparison::Second
+        }
+    }
+}
+
 fn over_tables(strategy: Strategy, sessions: u64) {
     let mut asked = 0;
     for seed in 0..sessions {
@@ -276,48 +298,14 @@ fn over_tables(strategy: Strategy, sessions: u64) {
         let class = some_class(&mut random);
         let concepts: Vec<FiniteConcept> = class.concepts().collect();
         let target = concepts[random.random_range(0..concepts.len())];
-        // One chain, or two between which nothing can be compared; in each the
-        // accepted atoms are on top.
-        let strands = random.random_range(1..=2u32);
-        let places: Vec<(u32, bool, u32)> = (class.atoms())
-            .map(|atom| {
-                let strand = random.random_range(0..strands);
-                (
-                    strand,
-                    class.contains(&target, &atom),
-                    random.random_range(0..3),
-                )
-            })
-            .collect();
+        let order = some_order(&class, target, &mut random);
         let config = some_config(strategy, &mut random);
-        let answer = |question: &Question<FiniteAtom, FiniteConcept>| match question {
-            Question::Membership { atom } if places[atom.0 as usize].1 => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            Question::Comparison { first, second } => {
-                let [one, other] = [first, second].map(|atom| places[atom.0 as usize]);
-                Reply::Compared(if one.0 != other.0 {
-                    Comparison::Incomparable
-                } else if one == other {
-                    Comparison::Equal
-                } else if one > other {
-                    Comparison::First
-                } else {
-                    Comparison::Second
-                })
-            }
-            Question::Equivalence { hypothesis } => {
-                let wrong = |atom: &FiniteAtom| {
-                    class.contains(hypothesis, atom) != places[atom.0 as usize].1
-                };
-                match class.atoms().find(wrong) {
-                    Some(atom) => Reply::Counterexample {
-                        atom,
-                        label: places[atom.0 as usize].1,
-                    },
-                    None => Reply::Correct,
-                }
-            }
+        let mut teacher = TableTeacher {
+            class: &class,
+            target,
+            order,
         };
+        let answer = |question: &Question<FiniteAtom, FiniteConcept>| reply(&mut teacher, question);
         let is_target = |learned: &FiniteConcept| *learned == target;
         asked += session(class.clone(), &config, &[], answer, is_target, &mut random);
     }
@@ -331,13 +319,15 @@ fn four_hundred_and_forty_sessions_over_automata() {
 }
 
 #[test]
-fn a_dozen_sessions_over_automata_by_the_posterior() {
+fn two_dozen_sessions_over_automata_by_the_posterior() {
     over_automata(Strategy::Bayes, 12, 3);
+    over_automata(Strategy::Exp4Plus, 12, 3);
 }
 
 #[test]
-fn five_hundred_and_fifty_sessions_over_tables() {
+fn seven_hundred_and_fifty_sessions_over_tables() {
     over_tables(Strategy::Thesis, 250);
     over_tables(Strategy::Membership, 100);
     over_tables(Strategy::Bayes, 200);
+    over_tables(Strategy::Exp4Plus, 200);
 }

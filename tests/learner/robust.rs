@@ -9,11 +9,12 @@ use memrep::concept::{ConceptClass, DfaClass, FiniteAtom, FiniteClass, FiniteCon
 use memrep::evidence::{AnswerId, Comparison, Fact};
 use memrep::identify::{EngineChoice, Settings};
 use memrep::learner::{Config, Learner, Question, Reply, Step, Strategy};
-use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, Teacher, TeacherSettings};
+use memrep::oracle::{Counterexamples, Order, ScriptedTeacher, Target, TeacherSettings};
 use proptest::prelude::*;
 
 use crate::brute::class;
 use crate::finite::{config, set_of};
+use crate::teacher::reply;
 
 fn robust(seed: u64) -> Config {
     Config {
@@ -39,20 +40,6 @@ fn teacher(target: &Target, error_rate: f64, seed: u64) -> ScriptedTeacher {
         seed,
     };
     ScriptedTeacher::new(target, settings)
-}
-
-fn reply(teacher: &mut ScriptedTeacher, question: &Question<Word, Dfa>) -> Reply<Word> {
-    match question {
-        Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-        Question::Membership { .. } => Reply::Reject,
-        Question::Comparison { first, second } => {
-            Reply::Compared(teacher.comparison(first, second))
-        }
-        Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-            Some((atom, label)) => Reply::Counterexample { atom, label },
-            None => Reply::Correct,
-        },
-    }
 }
 
 /// Whether no one who respects membership in `target` gives this reply.

@@ -68,8 +68,10 @@ pub(super) fn tell(check: &Progress, max_questions: u32) -> anyhow::Result<()> {
         return Ok(());
     }
     output::line(format!(
-        "the check has come to {} of {} random words within {max_questions} questions; allow more by `--max-questions`",
-        check.judged, check.needed
+        "the check has come to {} of {} random words within {}; allow more by `--max-questions`",
+        check.judged,
+        check.needed,
+        output::counted(max_questions, "question", "questions")
     ))
 }
 

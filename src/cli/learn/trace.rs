@@ -91,7 +91,8 @@ pub(super) fn line(
                 )
             }
             Question::Equivalence { hypothesis } => {
-                format!("is it this automaton with {} states?", hypothesis.size())
+                let states = output::counted(hypothesis.size(), "state", "states");
+                format!("is it this automaton with {states}?")
             }
         };
         let shown = match asked.reply {

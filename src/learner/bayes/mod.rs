@@ -1,7 +1,9 @@
 //! Strategy `bayes`: a posterior over consistent concepts of several sizes, a
 //! model of how this teacher answers comparisons, learned on the way, and the
-//! question of any kind that is worth most for its cost.
+//! question of any kind that is worth most for its cost. Strategy `exp4+` differs
+//! in that a bandit chooses the kind.
 
+mod arms;
 mod atoms;
 mod doubts;
 mod posterior;
@@ -9,12 +11,13 @@ mod price;
 mod value;
 
 use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 
 use self::atoms::Table;
 pub use self::doubts::{Doubt, Doubts};
 use self::posterior::Posterior;
 use super::choose::{Move, ask, equivalence};
-use super::{Learner, Question, Step};
+use super::{Learner, Question, Step, Strategy};
 use crate::belief::Heard;
 use crate::concept::{ConceptClass, Failure, Wish};
 use crate::evidence::Budget;
@@ -66,22 +69,24 @@ impl<C: ConceptClass> Learner<C> {
         } else {
             0.0
         };
-        let Some((best, worth)) = value::best(self, &table, wrong) else {
+        let mut arms = value::best(self, &table, wrong);
+        let better = value::better::<C>(&arms);
+        let Some((arm, worth)) = better.and_then(|arm| Some((arm, arms[arm].as_ref()?.1))) else {
             return (ask(equivalence(&top), None, false), Some(top));
         };
-        let question = if price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong)
-        {
-            equivalence(&top)
+        if price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong) {
+            return (ask(equivalence(&top), None, false), Some(top));
+        }
+        for (question, _) in arms.iter_mut().flatten() {
+            mirror(question, &mut random);
+        }
+        let chosen = if self.config.strategy == Strategy::Exp4Plus {
+            self.bet_on_arms(&table, arms, arm, &mut random)
         } else {
-            match best {
-                Question::Comparison { first, second } if random.random() => Question::Comparison {
-                    first: second,
-                    second: first,
-                },
-                other => other,
-            }
+            arms[arm].take().map(|(question, _)| (question, None))
         };
-        (ask(question, None, false), Some(top))
+        let (question, round) = chosen.unwrap_or_else(|| (equivalence(&top), None));
+        (ask(question, round, false), Some(top))
     }
 
     /// All that was heard: what is known from the start, and then answer by
@@ -99,6 +104,16 @@ impl<C: ConceptClass> Learner<C> {
             Some(std::iter::once(said).chain(promised).collect())
         });
         std::iter::once(given).chain(answered).collect()
+    }
+}
+
+/// Shows the atoms of a comparison in an order that is drawn, so that the place
+/// says nothing and a habit of choosing the first does no harm.
+fn mirror<A, K>(question: &mut Question<A, K>, random: &mut ChaCha8Rng) {
+    if let Question::Comparison { first, second } = question
+        && random.random()
+    {
+        std::mem::swap(first, second);
     }
 }
 

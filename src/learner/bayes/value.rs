@@ -5,7 +5,8 @@ use super::atoms::Table;
 use super::entropy;
 use crate::belief::{End, Tally};
 use crate::concept::{ConceptClass, Ending};
-use crate::learner::{Learner, Question, Strategy};
+use crate::learner::exp4::{COMPARISON, MEMBERSHIP};
+use crate::learner::{Learner, Question};
 
 /// A question's information in bits, and its cost.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +16,8 @@ pub(super) struct Worth {
 }
 
 impl Worth {
-    fn rate(self) -> f64 {
+    /// Bits for a unit of cost.
+    pub(super) fn rate(self) -> f64 {
         self.bits / self.cost
     }
 }
@@ -28,25 +30,40 @@ const REPEATED: f64 = 0.7;
 const NOTHING: f64 = 1e-9;
 
 /// A question, and what it is worth.
-type Best<C> = (
+pub(super) type Best<C> = (
     Question<<C as ConceptClass>::Atom, <C as ConceptClass>::Concept>,
     Worth,
 );
 
-/// The question that is worth most for its cost, if any is worth something.
+/// The arm whose question is worth more for its cost, a membership query where
+/// both are worth the same; none if neither arm has a question.
+pub(super) fn better<C: ConceptClass>(best: &[Option<Best<C>>; 2]) -> Option<usize> {
+    let rate = |arm: usize| best[arm].as_ref().map(|(_, worth)| worth.rate());
+    match (rate(MEMBERSHIP), rate(COMPARISON)) {
+        (Some(judging), Some(comparing)) if !is_more(comparing, judging) => Some(MEMBERSHIP),
+        (_, Some(_)) => Some(COMPARISON),
+        (judging, None) => judging.map(|_| MEMBERSHIP),
+    }
+}
+
+/// Whether one worth is more than another, and not only by the last digits.
+fn is_more(one: f64, other: f64) -> bool {
+    one > other * (1.0 + 1e-9)
+}
+
+/// By arm, the question that is worth most for its cost, where one is worth
+/// something.
 pub(super) fn best<C: ConceptClass>(
     learner: &Learner<C>,
     table: &Table<C::Atom>,
     wrong: f64,
-) -> Option<Best<C>> {
+) -> [Option<Best<C>>; 2] {
     let config = &learner.config;
-    let mut best: Option<Best<C>> = None;
-    let beats = |best: &Option<(_, Worth)>, worth: Worth| {
-        worth.bits > NOTHING
-            && best
-                .as_ref()
-                .is_none_or(|(_, known)| worth.rate() > known.rate() * (1.0 + 1e-9))
+    let beats = |best: &Option<Best<C>>, worth: Worth| {
+        let known = best.as_ref().map(|(_, worth)| worth.rate());
+        worth.bits > NOTHING && known.is_none_or(|known| is_more(worth.rate(), known))
     };
+    let [mut membership, mut comparison] = [None, None];
     let accepts: Vec<f64> = (table.ends.iter())
         .map(|ends| mass(ends, &table.weights))
         .collect();
@@ -58,12 +75,12 @@ pub(super) fn best<C: ConceptClass>(
         if learner.evidence.was_judged(atom) {
             worth.bits *= REPEATED;
         }
-        if beats(&best, worth) && learner.evidence.may_judge(atom) {
-            best = Some((Question::Membership { atom: atom.clone() }, worth));
+        if beats(&membership, worth) && learner.evidence.may_judge(atom) {
+            membership = Some((Question::Membership { atom: atom.clone() }, worth));
         }
     }
-    if !config.comparison_cost.is_finite() || config.strategy == Strategy::Membership {
-        return best;
+    if !learner.compares() {
+        return [membership, None];
     }
     let outlook = Outlook::new(table, wrong);
     let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
@@ -89,12 +106,12 @@ pub(super) fn best<C: ConceptClass>(
             bits: f64::from(outlook.bits(first, second, 1)),
             cost: config.comparison_cost,
         };
-        if beats(&best, worth) {
+        if beats(&comparison, worth) {
             let (first, second) = (table.atoms[one].clone(), table.atoms[other].clone());
-            best = Some((Question::Comparison { first, second }, worth));
+            comparison = Some((Question::Comparison { first, second }, worth));
         }
     }
-    best
+    [membership, comparison]
 }
 
 /// The concepts by which pairs are looked at first, and the pairs that are

@@ -1,0 +1,146 @@
+//! What `memrep learn` tells at its end.
+
+use std::time::Duration;
+
+use automata::Dfa;
+use serde::Serialize;
+
+use super::{Args, check, doubts};
+use crate::bench::{Report, percentile};
+use crate::cli::output::{self, Output, counted};
+use crate::learner::{Doubts, Strategy};
+use crate::oracle::Target;
+
+/// What `--format json` prints last.
+#[derive(Serialize)]
+struct Summary<'a> {
+    target: &'a str,
+    strategy: Strategy,
+    seed: u64,
+    equivalent: bool,
+    /// The number of states learned.
+    states: Option<usize>,
+    membership: u32,
+    comparison: u32,
+    equivalence: u32,
+    cost: f64,
+    dropped: u32,
+    /// The share of the answers that seem wrong, and which these are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wrong: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    doubted: Option<Vec<u32>>,
+    hurried: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    conformance: Option<check::Checked>,
+    question_ms: Milliseconds,
+    cpu_s: f64,
+}
+
+/// The CPU time that choosing a question took.
+#[derive(Serialize)]
+struct Milliseconds {
+    p50: f64,
+    p95: f64,
+    max: f64,
+}
+
+impl Milliseconds {
+    fn of(times: &[Duration]) -> Self {
+        let at = |percent| rounded(percentile(times, percent).as_secs_f64() * 1e3);
+        Self {
+            p50: at(50),
+            p95: at(95),
+            max: at(100),
+        }
+    }
+}
+
+/// To three places, as more would be noise.
+fn rounded(number: f64) -> f64 {
+    (number * 1e3).round() / 1e3
+}
+
+/// Tells what came of it.
+pub(super) fn tell(
+    args: &Args,
+    target: &Target,
+    report: &Report<Dfa>,
+    doubts: Option<&Doubts>,
+) -> anyhow::Result<()> {
+    let counts = report.counts;
+    let times = Milliseconds::of(&report.question_times);
+    if args.format == Output::Json {
+        let summary = Summary {
+            target: target.name(),
+            strategy: args.strategy,
+            seed: args.seed,
+            equivalent: report.learned.is_some(),
+            states: report.learned.as_ref().map(Dfa::size),
+            membership: counts.membership,
+            comparison: counts.comparison,
+            equivalence: counts.equivalence,
+            cost: report.cost,
+            dropped: report.dropped,
+            wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
+            doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
+            hurried: report.hurried,
+            conformance: (report.check.as_ref())
+                .map(|check| check::Checked::of(check, counts.conformance)),
+            question_ms: times,
+            cpu_s: rounded(report.cpu.as_secs_f64()),
+        };
+        return output::line(serde_json::to_string(&summary)?);
+    }
+    match &report.learned {
+        Some(learned) => output::line(format!(
+            "learned: {} with {}",
+            target.name(),
+            counted(learned.size(), "state", "states")
+        ))?,
+        None => output::line(format!(
+            "not learned: {} within {}; allow more by `--max-questions`",
+            target.name(),
+            counted(args.max_questions, "question", "questions")
+        ))?,
+    }
+    if let Some(check) = &report.check {
+        check::tell(check, args.max_questions)?;
+    }
+    let judged = args.conformance.map_or(String::new(), |_| {
+        let judged = counted(counts.conformance, "judgement", "judgements");
+        format!(", {judged} to check the result")
+    });
+    output::line(format!(
+        "asked: {}, {}, {}{judged}",
+        counted(counts.membership, "membership query", "membership queries"),
+        counted(counts.comparison, "comparison", "comparisons"),
+        counted(
+            counts.equivalence,
+            "equivalence query",
+            "equivalence queries"
+        )
+    ))?;
+    output::line(format!(
+        "cost: {} (equivalence queries{} not counted)",
+        report.cost,
+        if args.conformance.is_some() {
+            " and the check"
+        } else {
+            ""
+        }
+    ))?;
+    if report.dropped > 0 {
+        output::line(format!(
+            "dropped: {} that contradicted others",
+            counted(report.dropped, "answer", "answers")
+        ))?;
+    }
+    if let Some(doubts) = doubts {
+        doubts::tell(doubts)?;
+    }
+    output::line(format!(
+        "CPU time: {} ms a question (median; 95 % within {} ms)",
+        times.p50, times.p95
+    ))
+}
