@@ -1,6 +1,9 @@
-//! Grids and automata drawn at random.
+//! Grids and automata drawn at random, and time.
+
+use std::time::Duration;
 
 use automata::{Alphabet, Dfa, Symbol};
+use memrep::bench::process_cpu;
 use memrep::world::World;
 use memrep::world::grid::{Cell, Grid, GridError, Labelling, Tile};
 use rand::seq::IndexedRandom;
@@ -90,4 +93,9 @@ pub(crate) fn grid_of(world: &World) -> &Grid {
         World::Grid(grid) => grid,
         _ => panic!("this world is no grid"),
     }
+}
+
+/// The CPU time since then.
+pub(crate) fn since(start: Duration) -> Duration {
+    process_cpu().saturating_sub(start)
 }

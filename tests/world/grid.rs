@@ -83,7 +83,7 @@ fn small(number: u64) -> Grid {
         silent: 0,
         coloured: 40,
         walls: 10,
-        labelling: if number % 3 == 0 {
+        labelling: if number.is_multiple_of(3) {
             Labelling::EveryStep
         } else {
             Labelling::Entry

@@ -14,7 +14,7 @@ use memrep::world::World;
 use memrep::world::grid::Labelling;
 use rand_chacha::ChaCha8Rng;
 
-use crate::draw::{self, Sort, automaton};
+use crate::draw::{self, Sort, automaton, since};
 use crate::learn::{agree, atoms, settings};
 
 /// Of a hundred cells so many coloured and walls, and the steps.
@@ -88,10 +88,7 @@ fn witnesses_in_large_grids() {
         let prior = Prior::none(world.alphabet());
         let class = Situated::new(Arc::clone(&world), prior, settings()).unwrap();
         let states = world.outline().map_or(0, |outline| outline.size());
-        println!(
-            "{sort:?}: made in {:?}, outline of {states}",
-            process_cpu() - start
-        );
+        println!("{sort:?}: made in {:?}, outline of {states}", since(start));
         for states in [6, 12] {
             let mut random = draw::random(states as u64);
             let (mut found, mut searched, mut none) = (Vec::new(), Vec::new(), Vec::new());
@@ -101,10 +98,10 @@ fn witnesses_in_large_grids() {
                 let only_one = one.product(&other, |one, other| one && !other).unwrap();
                 let start = process_cpu();
                 let witness = class.witnesses(&one, &other, 1);
-                found.push(process_cpu() - start);
+                found.push(since(start));
                 let start = process_cpu();
                 assert_eq!(world.simplest(&only_one, 1), witness);
-                searched.push(process_cpu() - start);
+                searched.push(since(start));
                 for word in witness {
                     assert!(world.is_feasible(&word));
                     assert!(one.accepts(&word) && !other.accepts(&word));
@@ -112,7 +109,7 @@ fn witnesses_in_large_grids() {
                 let silent = ended_by_the_ninth(&only_one);
                 let start = process_cpu();
                 assert!(!world.has_word(&silent));
-                none.push(process_cpu() - start);
+                none.push(since(start));
             }
             show(
                 &format!("  {states} states, asked of the class"),
@@ -142,7 +139,7 @@ fn ask(world: &Arc<World>, states: usize, strategy: Strategy, most: u32) -> Vec<
     for number in 0..most {
         let start = process_cpu();
         let step = learner.next();
-        times.push(process_cpu() - start);
+        times.push(since(start));
         let (question, round) = match step {
             Step::Ask {
                 question, round, ..

@@ -69,7 +69,7 @@ fn drawn_task(
 ) -> Option<(Prior, Target)> {
     let symbols = world.alphabet();
     let mut target = automaton(symbols, 4, random);
-    let [a, b] = [0, 1].map(|place| automata::Symbol::new(place));
+    let [a, b] = [0, 1].map(automata::Symbol::new);
     let template = match number % 6 {
         1 => Some((Template::Avoid(a), true)),
         3 => Some((Template::Reach(b), true)),
@@ -112,7 +112,7 @@ fn learn_in_grids(numbers: std::ops::Range<u64>, strategy: Strategy) {
             silent: 0,
             coloured: random.random_range(10..=60),
             walls: random.random_range(0..=20),
-            labelling: if number % 4 == 0 {
+            labelling: if number.is_multiple_of(4) {
                 Labelling::EveryStep
             } else {
                 Labelling::Entry
@@ -129,12 +129,12 @@ fn learn_in_grids(numbers: std::ops::Range<u64>, strategy: Strategy) {
             ..Config::default()
         };
         let teacher = TeacherSettings {
-            order: if number % 2 == 0 {
+            order: if number.is_multiple_of(2) {
                 Order::Ordered
             } else {
                 Order::Random
             },
-            counterexamples: if number % 3 == 0 {
+            counterexamples: if number.is_multiple_of(3) {
                 Counterexamples::Random
             } else {
                 Counterexamples::Shortest

@@ -15,7 +15,7 @@ use memrep::world::pool::{Media, Pool, PoolReader};
 use memrep::world::{Trajectory, World};
 use rand::RngExt;
 
-use crate::draw::{self, alphabet, automaton};
+use crate::draw::{self, alphabet, automaton, since};
 use crate::learn::{learn, settings};
 
 /// A file of so many random recordings of so many steps.
@@ -57,7 +57,7 @@ fn ten_thousand_recordings_load_and_separate() {
     println!(
         "10 000 recordings of 50 steps: loaded in {:?}, CPU {:?}",
         start.elapsed(),
-        process_cpu() - cpu
+        since(cpu)
     );
     assert_eq!(pool.recordings().len(), 10_000);
     let words: Vec<Word> = pool.recordings().iter().map(|r| r.word.clone()).collect();
@@ -69,7 +69,7 @@ fn ten_thousand_recordings_load_and_separate() {
         let [one, other] = [0; 2].map(|_| automaton(&symbols, 6, &mut random));
         let start = process_cpu();
         let found = class.witnesses(&one, &other, 2);
-        slowest = slowest.max(process_cpu() - start);
+        slowest = slowest.max(since(start));
         let mut expected: Vec<&Word> = words
             .iter()
             .filter(|word| one.accepts(word) && !other.accepts(word))
@@ -240,7 +240,7 @@ fn pieces_are_the_same_as_the_whole() {
     }
     let mut reader = PoolReader::new(symbols);
     let error = (0..40)
-        .find_map(|_| reader.feed(&[b'x'; 1 << 16]).err())
+        .find_map(|_| reader.feed(&vec![b'x'; 1 << 16]).err())
         .unwrap();
     assert!(error.to_string().starts_with("line 1: the line is longer"));
 }

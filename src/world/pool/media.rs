@@ -25,7 +25,7 @@ pub enum Media {
         /// Where it is.
         path: String,
     },
-    /// A film: MP4 or WebM.
+    /// A film: MP4 or `WebM`.
     Video {
         /// Where it is.
         path: String,
