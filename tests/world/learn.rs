@@ -172,10 +172,10 @@ fn learn_in_grids(numbers: std::ops::Range<u64>, strategy: Strategy) {
 
 #[test]
 fn random_targets_are_learned_in_random_grids_by_posterior() {
-    learn_in_grids(0..60, Strategy::Bayes);
+    learn_in_grids(0..40, Strategy::Bayes);
 }
 
 #[test]
 fn random_targets_are_learned_in_random_grids_by_elimination() {
-    learn_in_grids(60..260, Strategy::Thesis);
+    learn_in_grids(40..280, Strategy::Thesis);
 }

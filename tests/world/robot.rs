@@ -108,12 +108,12 @@ fn check(world: &Arc<World>, seeds: Range<u32>) {
 
 #[test]
 fn the_robot_is_taught_what_it_does_not_know_by_words() {
-    check(&words(), 0..8);
+    check(&words(), 0..4);
 }
 
 #[test]
 fn the_robot_is_taught_what_it_does_not_know_in_its_room() {
-    check(&room(), 8..20);
+    check(&room(), 4..10);
 }
 
 #[test]

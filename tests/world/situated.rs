@@ -10,7 +10,7 @@ use memrep::concept::{ConceptClass, DfaClass, Prior, Situated, Template, Wish};
 use memrep::evidence::{Budget, Fact};
 use memrep::learner::{Config, Learner, Strategy};
 use memrep::oracle::{ScriptedTeacher, Target, TeacherSettings};
-use memrep::world::grid::Labelling;
+use memrep::world::grid::{GridMap, Labelling};
 use memrep::world::{Words, World};
 
 use crate::draw::{self, Sort, automaton};
@@ -207,4 +207,40 @@ fn without_world_and_prior_the_questions_are_the_same() {
 fn a_learner_in_a_world_can_be_sent() {
     fn is_send<T: Send>() {}
     is_send::<Learner<Situated>>();
+}
+
+/// What tells concepts apart may be far: thousands of other behaviours take less.
+#[test]
+fn what_only_a_far_tile_tells_apart_is_not_one() {
+    let symbols = draw::alphabet(3);
+    let text = format!("aSb{}c", ".".repeat(36));
+    let grid = GridMap::new(&symbols, &text).grid(symbols.clone(), Labelling::Entry, 60);
+    let world = Arc::new(World::Grid(grid.unwrap()));
+    let mut class = class(&world, &Prior::none(&symbols));
+    let far = symbols.word(["c"]).unwrap();
+    let known = |atom: &Word| Fact::Label {
+        atom: atom.clone(),
+        accepted: true,
+    };
+    // Nothing without a `c` is rejected.
+    for word in class.atoms().take(300).collect::<Vec<_>>() {
+        assert!(word.iter().all(|symbol| symbol != far.symbols()[0]));
+        class.add(None, known(&word));
+    }
+    let wish = Wish {
+        sizes: 2,
+        decay: 0.5,
+        listed: 1000,
+        heard: &[],
+        seed: 0,
+    };
+    let spread = class.spread(&wish, &mut Budget::unlimited()).unwrap();
+    let rejects = |dfa: &&Dfa| !dfa.accepts(&far);
+    let concepts: Vec<&Dfa> = spread.concepts.iter().map(|c| &c.concept).collect();
+    let lost = concepts.iter().copied().find(rejects).expect("it is apart");
+    let all = concepts.iter().find(|dfa| dfa.size() == 1).unwrap();
+    let only_all = all.and(&lost.complement()).unwrap();
+    let expected: Vec<Word> = world.words_in(&only_all).take(2).collect();
+    assert_eq!(class.witnesses(all, lost, 2), expected);
+    assert!(!expected.is_empty() && world.is_feasible(&far));
 }
