@@ -217,14 +217,14 @@ fn what_only_a_far_tile_tells_apart_is_not_one() {
     let grid = GridMap::new(&symbols, &text).grid(symbols.clone(), Labelling::Entry, 60);
     let world = Arc::new(World::Grid(grid.unwrap()));
     let mut class = class(&world, &Prior::none(&symbols));
-    let far = symbols.word(["c"]).unwrap();
+    let far = symbols.word(["b", "c"]).unwrap();
     let known = |atom: &Word| Fact::Label {
         atom: atom.clone(),
         accepted: true,
     };
     // Nothing without a `c` is rejected.
     for word in class.atoms().take(300).collect::<Vec<_>>() {
-        assert!(word.iter().all(|symbol| symbol != far.symbols()[0]));
+        assert!(word.iter().all(|symbol| symbol != far.symbols()[1]));
         class.add(None, known(&word));
     }
     let wish = Wish {
