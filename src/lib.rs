@@ -8,6 +8,7 @@
 //! - [`belief`]: how a teacher is believed to answer, and what answers are worth
 //!   as evidence.
 //! - [`identify`]: the smallest automata consistent with evidence.
+//! - [`world`]: where behaviours come from, and how they look.
 //! - [`concept`]: what can be learned: classes of concepts, smallest first.
 //! - [`oracle`]: who can answer without a person.
 //! - [`learner`]: which question to ask next.
@@ -31,3 +32,4 @@ pub mod server;
 pub mod session;
 #[cfg(feature = "server")]
 pub mod store;
+pub mod world;

@@ -6,6 +6,9 @@
 mod dfa;
 mod finite;
 mod preorder;
+mod prior;
+mod situated;
+mod template;
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -20,6 +23,9 @@ pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish}
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use preorder::Preorder;
+pub use prior::{Applied, Prior, PriorError};
+pub use situated::Situated;
+pub use template::{Template, TemplateError};
 
 /// The atoms that are drawn from where a class knows no better distribution.
 const DRAWN: usize = 1024;

@@ -7,6 +7,7 @@ mod counterexample;
 mod drawn;
 mod order;
 mod scripted;
+mod situated;
 mod target;
 
 pub use counterexample::Counterexamples;
@@ -14,6 +15,7 @@ pub use drawn::Shape;
 pub(crate) use drawn::minimal;
 pub use order::{Order, PreferenceOrder};
 pub use scripted::{ScriptedTeacher, TeacherSettings};
+pub use situated::SituatedTeacher;
 pub use target::{Target, TargetError};
 
 use crate::evidence::Comparison;
