@@ -264,7 +264,7 @@ impl ConceptClass for Situated {
             Some(inside) => End {
                 inside,
                 place: None,
-                progress: 0,
+                merit: 0,
             },
         }
     }
