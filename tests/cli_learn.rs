@@ -288,8 +288,17 @@ fn a_claim_is_checked() {
 #[test]
 fn a_contradiction_is_traced() {
     let folder = folder();
-    let arguments = "learn --target tomita:6 --error-rate 0.15 --max-states 4 --seed 2 --trace";
-    let outcome = memrep(&folder, &format!("{arguments} --format json"));
+    // Not every teacher who may err does.
+    let (arguments, outcome) = (0..10)
+        .map(|seed| {
+            let arguments = format!(
+                "learn --target tomita:6 --error-rate 0.15 --max-states 4 --seed {seed} --trace"
+            );
+            let outcome = memrep(&folder, &format!("{arguments} --format json"));
+            (arguments, outcome)
+        })
+        .find(|(_, outcome)| outcome.stdout.contains("\"conflict\""))
+        .expect("one of ten teachers contradicts what was said before");
     let lines: Vec<Value> = (outcome.stdout.lines())
         .map(|line| serde_json::from_str(line).unwrap())
         .collect();
@@ -314,7 +323,7 @@ fn a_contradiction_is_traced() {
     }
     assert!(dropped > 0, "nobody erred");
     assert_eq!(summary["dropped"], dropped);
-    let people = memrep(&folder, arguments).stdout;
+    let people = memrep(&folder, &arguments).stdout;
     assert!(people.contains(" cannot all be true. "), "{people}");
 }
 
@@ -419,8 +428,17 @@ fn bad_input_is_told() {
 #[test]
 fn wrong_answers_are_named() {
     let folder = folder();
-    let learn = "learn --target tomita:6 --strategy bayes --robust --error-rate 0.2 --seed 3";
-    let outcome = memrep(&folder, &format!("{learn} --trace --format json"));
+    // Not every teacher who may err does.
+    let (learn, outcome) = (0..10)
+        .map(|seed| {
+            let learn = format!(
+                "learn --target tomita:6 --strategy bayes --robust --error-rate 0.2 --seed {seed}"
+            );
+            let outcome = memrep(&folder, &format!("{learn} --trace --format json"));
+            (learn, outcome)
+        })
+        .find(|(_, outcome)| !outcome.stdout.contains("\"doubted\":[]"))
+        .expect("one of ten teachers errs");
     assert_eq!(outcome.status, Some(0));
     let summary = summary(&outcome);
     assert_eq!(summary["equivalent"], true);
@@ -433,7 +451,7 @@ fn wrong_answers_are_named() {
         "{summary}"
     );
     assert!(!doubted.is_empty(), "a fifth of the answers are wrong");
-    let people = memrep(&folder, learn);
+    let people = memrep(&folder, &learn);
     let percent = (share * 100.0).round();
     let sentence = format!("doubted: about {percent} % of the answers seem wrong");
     assert!(people.stdout.contains(&sentence), "{}", people.stdout);

@@ -3,28 +3,32 @@
 
 mod check;
 mod doubts;
+mod situation;
 mod summary;
 mod trace;
 mod values;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use automata::Dfa;
 use automata::format::json::{Document, Provenance};
+use automata::{Alphabet, Dfa, Word};
 use indicatif::ProgressBar;
 
+use self::situation::Situation;
 use self::values::Promise;
 use super::files::{self, Content, Format};
 use super::output::{Output, counted};
-use crate::bench::{process_cpu, teach};
-use crate::concept::DfaClass;
+use crate::bench::{Report, process_cpu, teach};
+use crate::concept::{ConceptClass, DfaClass, Situated};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
-    Counterexamples, Order, ScriptedTeacher, Target, TargetError, TeacherSettings,
+    Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, Teacher,
+    TeacherSettings,
 };
 
 /// The work that one question may do: a few seconds of search.
@@ -37,6 +41,8 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target robot --teacher random --counterexample random --trace
   memrep learn --target tomita:7 --error-rate 0.1 --strategy bayes --robust
   memrep learn --target task.json --membership-cost 8 --save learned.json
+  memrep learn --target robot --prior 'avoid R' --prior 'reach Y'
+  memrep learn --target robot --prior ry.json --grid room.txt --steps 30
   memrep learn --target tomita:5 --comparison-cost inf --format json
     {\"target\":\"tomita:5\",\"strategy\":\"bayes\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
 
@@ -50,6 +56,9 @@ With --conformance, what the teacher agreed with is believed only after random
 words were judged: the line `checked` says how far one may trust it. Of a teacher that
 errs a wrong judgement may refute what was right; it is found out
 and dropped like any other, and the check goes on where it was.
+
+With --prior, --suffices or --grid only behaviours are asked about whose label is
+not settled and that can happen, and the result agrees with the target on these.
 
 Exit status: 0 if the target was learned, 1 if the questions ran out first (also
 in the check), 2 if the arguments or a file are at fault.")]
@@ -110,12 +119,33 @@ pub(crate) struct Args {
     /// `robot`.
     #[arg(long)]
     no_empty_word: bool,
+    /// Something that holds whatever is learned, and is never asked: a rule
+    /// (`avoid X`, `reach Y`, `X before Y`, `never X after Y`) or an automaton
+    /// file. May be given several times.
+    #[arg(long, value_name = "RULE")]
+    prior: Vec<String>,
+    /// Something that suffices whatever is learned: a rule or an automaton file.
+    /// May be given several times.
+    #[arg(long, value_name = "RULE")]
+    suffices: Vec<String>,
+    /// Ask only about walks through the grid that this text file draws: `S` a
+    /// start, `#` a wall, `.` an empty cell, and a symbol of one character a tile
+    /// that gives the symbol when it is entered.
+    #[arg(long, value_name = "FILE")]
+    grid: Option<PathBuf>,
+    /// The steps that a walk through the grid has at most.
+    #[arg(long, value_name = "N", default_value = "40", value_parser = clap::value_parser!(u16).range(1..))]
+    steps: u16,
     /// Print every question with its answer.
     #[arg(long)]
     trace: bool,
-    /// Write the learned automaton to this file (`-`: the standard output).
+    /// Write the learned automaton, with what is known beforehand, to this file
+    /// (`-`: the standard output).
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
+    /// Write only the part that was learned beside what is known beforehand.
+    #[arg(long, value_name = "FILE")]
+    save_part: Option<PathBuf>,
     /// How to print.
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     format: Output,
@@ -125,6 +155,11 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.robust && args.strategy != Strategy::Bayes {
         anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    }
+    if args.save_part.is_some() && args.prior.is_empty() && args.suffices.is_empty() {
+        anyhow::bail!(
+            "without `--prior` or `--suffices` all is learned: use `--save` in place of `--save-part`"
+        );
     }
     if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
         anyhow::bail!(
@@ -154,17 +189,60 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         seed: args.seed,
         budget: BUDGET,
     };
-    let class = DfaClass::new(alphabet.clone(), settings);
-    let mut learner = Learner::new(class, config, target.known().to_vec());
-    let mut teacher = ScriptedTeacher::new(
-        &target,
-        TeacherSettings {
-            order: args.teacher,
-            counterexamples: args.counterexample,
-            error_rate: args.error_rate,
-            seed: args.seed,
-        },
-    );
+    let teacher = TeacherSettings {
+        order: args.teacher,
+        counterexamples: args.counterexample,
+        error_rate: args.error_rate,
+        seed: args.seed,
+    };
+    let known = target.known().to_vec();
+    let (report, doubts) = match situation::read(args, &alphabet)? {
+        None => {
+            let class = DfaClass::new(alphabet.clone(), settings);
+            let mut learner = Learner::new(class, config, known);
+            let mut teacher = ScriptedTeacher::new(&target, teacher);
+            let report = converse(args, &mut learner, &mut teacher, &alphabet)?;
+            (report, learner.doubts().cloned())
+        }
+        Some(Situation { world, prior }) => {
+            let open = prior.open().clone();
+            let class = Situated::new(Arc::clone(&world), prior.clone(), settings)?;
+            let known = class.examples(&known).context(
+                "what is known of the target at the start does not fit; `--no-empty-word` starts with nothing",
+            )?;
+            let mut learner = Learner::new(class, config, known);
+            let mut teacher = SituatedTeacher::new(world, open, &target, teacher);
+            let mut report = converse(args, &mut learner, &mut teacher, &alphabet)?;
+            if let (Some(path), Some(part)) = (&args.save_part, &report.learned) {
+                save(path, "--save-part", &target, args.seed, part)?;
+            }
+            report.learned = report.learned.map(|part| prior.whole(&part));
+            (report, learner.doubts().cloned())
+        }
+    };
+    if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
+        save(path, "--save", &target, args.seed, learned)?;
+    }
+    summary::tell(args, &target, &report, doubts.as_ref())?;
+    let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
+    Ok(if report.learned.is_some() && borne_out {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(1)
+    })
+}
+
+/// Lets the teacher teach the learner, and tells of it what is asked to be told.
+fn converse<C, T>(
+    args: &Args,
+    learner: &mut Learner<C>,
+    teacher: &mut T,
+    alphabet: &Alphabet,
+) -> anyhow::Result<Report<Dfa>>
+where
+    C: ConceptClass<Concept = Dfa, Atom = Word>,
+    T: Teacher<Concept = Dfa, Atom = Word>,
+{
     // Drawn only on a terminal, and only where the trace does not tell anyway.
     let progress = if args.trace {
         ProgressBar::hidden()
@@ -175,28 +253,22 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut printed = Ok(());
     // The check and the batch of the last claim told.
     let mut told = (0, 0);
-    let report = teach(
-        &mut learner,
-        &mut teacher,
-        args.max_questions,
-        process_cpu,
-        |asked| {
-            let questions = |number| counted(number, "question", "questions");
-            progress.set_message(match asked.check {
-                None => format!("{} asked", questions(asked.number)),
-                Some(check) => format!(
-                    "{} asked; {} of {} random words judged",
-                    questions(asked.number),
-                    check.judged,
-                    check.needed
-                ),
-            });
-            if args.trace && printed.is_ok() {
-                printed = check::batch(args.format, asked, &mut told)
-                    .and_then(|()| trace::line(args.format, &alphabet, asked));
-            }
-        },
-    );
+    let report = teach(learner, teacher, args.max_questions, process_cpu, |asked| {
+        let questions = |number| counted(number, "question", "questions");
+        progress.set_message(match asked.check {
+            None => format!("{} asked", questions(asked.number)),
+            Some(check) => format!(
+                "{} asked; {} of {} random words judged",
+                questions(asked.number),
+                check.judged,
+                check.needed
+            ),
+        });
+        if args.trace && printed.is_ok() {
+            printed = check::batch(args.format, asked, &mut told)
+                .and_then(|()| trace::line(args.format, alphabet, asked));
+        }
+    });
     progress.finish_and_clear();
     printed?;
     let report = report?;
@@ -204,16 +276,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let mut conflicts = report.conflicts.iter();
         conflicts.try_for_each(|dropped| trace::conflict(args.format, dropped))?;
     }
-    if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
-        save(path, &target, args.seed, learned)?;
-    }
-    summary::tell(args, &target, &report, learner.doubts())?;
-    let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
-    Ok(if report.learned.is_some() && borne_out {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(1)
-    })
+    Ok(report)
 }
 
 /// The target of this name, or else of this file.
@@ -237,7 +300,13 @@ fn target(args: &Args) -> anyhow::Result<Target> {
     })
 }
 
-fn save(path: &Path, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Result<()> {
+fn save(
+    path: &Path,
+    option: &str,
+    target: &Target,
+    seed: u64,
+    learned: &Dfa,
+) -> anyhow::Result<()> {
     let document = Document {
         dfa: learned.clone(),
         name: Some(target.name().to_owned()),
@@ -249,7 +318,7 @@ fn save(path: &Path, target: &Target, seed: u64, learned: &Dfa) -> anyhow::Resul
     };
     let format = path
         .extension()
-        .map_or(Ok(Format::Json), |_| Format::choose(None, path, "--save"))?;
+        .map_or(Ok(Format::Json), |_| Format::choose(None, path, option))?;
     let text = files::render(&Content::Automaton(document), format)?;
     files::write(path, &text).context("the learned automaton was not saved")
 }
