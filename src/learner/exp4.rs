@@ -165,6 +165,7 @@ mod tests {
         }
         assert!(exp4.trust(2)[0] > 0.95, "{:?}", exp4.trust(2));
     }
+
     /// The same round with two more experts, who sleep: the first two are heeded
     /// as if they were alone, but for the exploration, and the sleepers gain
     /// what the mixture gained.

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use automata::Dfa;
-use memrep::bench::process_cpu;
+use memrep::bench::{process_cpu, teach};
 use memrep::concept::{ConceptClass, Prior, Situated};
-use memrep::evidence::AnswerId;
-use memrep::learner::{Config, Learner, Question, Reply, Step, Strategy};
-use memrep::oracle::{SituatedTeacher, Target, Teacher, TeacherSettings};
+use memrep::learner::{Config, Learner, Strategy};
+use memrep::oracle::{SituatedTeacher, Target, TeacherSettings};
 use memrep::world::World;
 use memrep::world::grid::Labelling;
 use rand_chacha::ChaCha8Rng;
@@ -135,38 +134,16 @@ fn ask(world: &Arc<World>, states: usize, strategy: Strategy, most: u32) -> Vec<
         ..Config::default()
     };
     let mut learner = Learner::new(class, config, Vec::new());
-    let mut times = Vec::new();
-    for number in 0..most {
-        let start = process_cpu();
-        let step = learner.next();
-        times.push(since(start));
-        let (question, round) = match step {
-            Step::Ask {
-                question, round, ..
-            } => (question, round),
-            Step::Done { hypothesis } => {
-                assert!(agree(world, &prior, &hypothesis, target.dfa()));
-                break;
-            }
-            Step::Conflict(conflict) => panic!("the teacher does not err: {conflict:?}"),
-        };
-        let reply = match &question {
-            Question::Membership { atom } if teacher.membership(atom) => Reply::Accept,
-            Question::Membership { .. } => Reply::Reject,
-            Question::Comparison { first, second } => {
-                Reply::Compared(teacher.comparison(first, second))
-            }
-            Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-                Some((atom, label)) => Reply::Counterexample { atom, label },
-                None => Reply::Correct,
-            },
-        };
-        for atom in atoms(&question) {
+    let report = teach(&mut learner, &mut teacher, most, process_cpu, |asked| {
+        for atom in atoms(asked.question) {
             assert!(world.is_feasible(&atom));
         }
-        (learner.record(AnswerId(number), question, round, reply)).unwrap();
+    });
+    let report = report.expect("the teacher does not err");
+    if let Some(learned) = report.learned {
+        assert!(agree(world, &prior, &learned, target.dfa()));
     }
-    times
+    report.question_times
 }
 
 #[test]

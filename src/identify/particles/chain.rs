@@ -58,10 +58,6 @@ impl Machine {
     /// Judges anew what was heard.
     pub(crate) fn hear(&mut self, ground: &Ground<'_>) {
         (ground.script).run(&self.delta, &self.output, &mut self.run);
-        self.judge(ground);
-    }
-
-    fn judge(&mut self, ground: &Ground<'_>) {
         self.tally = ground.script.tally(&self.delta, &self.output, &self.run);
         self.likelihood = ground.belief.log_chance(&self.tally);
     }

@@ -24,8 +24,6 @@ pub(crate) struct Run {
     at: Vec<u8>,
     /// How long the word of every node did well.
     progress: Vec<u32>,
-    /// Whether a word uses the edge.
-    pub(crate) used: Vec<bool>,
 }
 
 /// All that was heard so far.
@@ -88,16 +86,13 @@ impl Script {
         self.labels.len() + self.comparisons.len()
     }
 
-    /// Runs every word on the table: where it ends, how long it did well, and
-    /// which edges are used.
+    /// Runs every word on the table: where it ends, and how long it did well.
     pub(crate) fn run(&self, delta: &[u8], output: &[bool], run: &mut Run) {
         let is_sink = |state: &usize| {
             let row = state * self.symbols..(state + 1) * self.symbols;
             !output[*state] && delta[row].iter().all(|&t| usize::from(t) == *state)
         };
         let sink = (0..output.len()).find(is_sink).map_or(NOWHERE, |s| s as u8);
-        run.used.clear();
-        run.used.resize(delta.len(), false);
         run.at.clear();
         run.progress.clear();
         let step = |state: u8, depth| Step {
@@ -110,7 +105,6 @@ impl Script {
         for node in &self.nodes[1..] {
             let parent = node.parent as usize;
             let edge = usize::from(run.at[parent]) * self.symbols + node.symbol as usize;
-            run.used[edge] = true;
             let state = delta[edge];
             let progress = step(state, node.depth).progress(Some(run.progress[parent]));
             run.at.push(state);
