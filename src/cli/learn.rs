@@ -30,6 +30,8 @@ use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, Teacher,
     TeacherSettings,
 };
+use crate::world::World;
+use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
 const BUDGET: u64 = 2_000_000;
@@ -43,6 +45,7 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target task.json --membership-cost 8 --save learned.json
   memrep learn --target robot --prior 'avoid R' --prior 'reach Y'
   memrep learn --target robot --prior ry.json --grid room.txt --steps 30
+  memrep learn --target task.json --pool recordings.jsonl --no-empty-word
   memrep learn --target tomita:5 --comparison-cost inf --format json
     {\"target\":\"tomita:5\",\"strategy\":\"bayes\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
 
@@ -57,8 +60,10 @@ words were judged: the line `checked` says how far one may trust it. Of a teache
 errs a wrong judgement may refute what was right; it is found out
 and dropped like any other, and the check goes on where it was.
 
-With --prior, --suffices or --grid only behaviours are asked about whose label is
-not settled and that can happen, and the result agrees with the target on these.
+With --prior, --suffices, --grid or --pool only behaviours are asked about whose
+label is not settled and that can happen, and the result agrees with the target on
+these. Where that leaves something open, a behaviour is told that would decide it.
+With --trace --format json, `shown` has the walk or the recording of every question.
 
 Exit status: 0 if the target was learned, 1 if the questions ran out first (also
 in the check), 2 if the arguments or a file are at fault.")]
@@ -136,6 +141,13 @@ pub(crate) struct Args {
     /// The steps that a walk through the grid has at most.
     #[arg(long, value_name = "N", default_value = "40", value_parser = clap::value_parser!(u16).range(1..))]
     steps: u16,
+    /// When a tile of the grid gives its symbol.
+    #[arg(long, value_name = "WHEN", default_value = "entry")]
+    labelling: Labelling,
+    /// Ask only about the recordings in this file of JSON lines, such as
+    /// `{"id":"run-1","word":["a","b"]}`.
+    #[arg(long, value_name = "FILE", conflicts_with = "grid")]
+    pool: Option<PathBuf>,
     /// Print every question with its answer.
     #[arg(long)]
     trace: bool,
@@ -196,12 +208,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         seed: args.seed,
     };
     let known = target.known().to_vec();
+    let mut beyond = None;
     let (report, doubts) = match situation::read(args, &alphabet)? {
         None => {
             let class = DfaClass::new(alphabet.clone(), settings);
             let mut learner = Learner::new(class, config, known);
             let mut teacher = ScriptedTeacher::new(&target, teacher);
-            let report = converse(args, &mut learner, &mut teacher, &alphabet)?;
+            let report = converse(args, &mut learner, &mut teacher, &alphabet, None)?;
             (report, learner.doubts().cloned())
         }
         Some(Situation { world, prior }) => {
@@ -211,8 +224,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 "what is known of the target at the start does not fit; `--no-empty-word` starts with nothing",
             )?;
             let mut learner = Learner::new(class, config, known);
-            let mut teacher = SituatedTeacher::new(world, open, &target, teacher);
-            let mut report = converse(args, &mut learner, &mut teacher, &alphabet)?;
+            let mut teacher = SituatedTeacher::new(Arc::clone(&world), open, &target, teacher);
+            let mut report = converse(args, &mut learner, &mut teacher, &alphabet, Some(&world))?;
+            beyond = (report.learned.as_ref()).and_then(|part| learner.class().beyond(part));
             if let (Some(path), Some(part)) = (&args.save_part, &report.learned) {
                 save(path, "--save-part", &target, args.seed, part)?;
             }
@@ -223,7 +237,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, "--save", &target, args.seed, learned)?;
     }
-    summary::tell(args, &target, &report, doubts.as_ref())?;
+    summary::tell(args, &target, &report, doubts.as_ref(), beyond.as_ref())?;
     let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
     Ok(if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
@@ -238,6 +252,7 @@ fn converse<C, T>(
     learner: &mut Learner<C>,
     teacher: &mut T,
     alphabet: &Alphabet,
+    world: Option<&World>,
 ) -> anyhow::Result<Report<Dfa>>
 where
     C: ConceptClass<Concept = Dfa, Atom = Word>,
@@ -266,7 +281,7 @@ where
         });
         if args.trace && printed.is_ok() {
             printed = check::batch(args.format, asked, &mut told)
-                .and_then(|()| trace::line(args.format, alphabet, asked));
+                .and_then(|()| trace::line(args.format, alphabet, world, asked));
         }
     });
     progress.finish_and_clear();

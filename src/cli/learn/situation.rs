@@ -1,6 +1,7 @@
-//! `--prior`, `--suffices` and `--grid`: what is known beforehand, and where
+//! `--prior`, `--suffices`, `--grid` and `--pool`: what is known beforehand, and where
 //! behaviours come from.
 
+use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,7 +11,8 @@ use automata::{Alphabet, Dfa};
 use super::Args;
 use crate::cli::files;
 use crate::concept::{Prior, Template, TemplateError};
-use crate::world::grid::{GridMap, Labelling};
+use crate::world::grid::{Grid, GridMap};
+use crate::world::pool::{Pool, PoolReader};
 use crate::world::{Words, World};
 
 /// Without a grid all words up to this length can be shown.
@@ -24,7 +26,8 @@ pub(super) struct Situation {
 
 /// The situation that the arguments describe; none if they describe none.
 pub(super) fn read(args: &Args, alphabet: &Alphabet) -> anyhow::Result<Option<Situation>> {
-    if args.prior.is_empty() && args.suffices.is_empty() && args.grid.is_none() {
+    let everywhere = args.grid.is_none() && args.pool.is_none();
+    if everywhere && args.prior.is_empty() && args.suffices.is_empty() {
         return Ok(None);
     }
     let rules = |texts: &[String], option: &str| -> anyhow::Result<Vec<Dfa>> {
@@ -35,9 +38,10 @@ pub(super) fn read(args: &Args, alphabet: &Alphabet) -> anyhow::Result<Option<Si
     };
     let holding = rules(&args.prior, "--prior")?;
     let sufficing = rules(&args.suffices, "--suffices")?;
-    let world = match &args.grid {
-        Some(path) => World::Grid(grid(path, alphabet, args.steps)?),
-        None => World::Words(Words::new(alphabet.clone(), LONGEST)),
+    let world = match (&args.grid, &args.pool) {
+        (Some(path), _) => World::Grid(grid(path, alphabet, args)?),
+        (None, Some(path)) => World::Pool(pool(path, alphabet)?),
+        (None, None) => World::Words(Words::new(alphabet.clone(), LONGEST)),
     };
     Ok(Some(Situation {
         world: Arc::new(world),
@@ -61,11 +65,18 @@ fn rule(text: &str, alphabet: &Alphabet) -> anyhow::Result<Dfa> {
     }
 }
 
-fn grid(path: &Path, alphabet: &Alphabet, steps: u16) -> anyhow::Result<crate::world::grid::Grid> {
+fn grid(path: &Path, alphabet: &Alphabet, args: &Args) -> anyhow::Result<Grid> {
     let name = path.display();
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("`--grid {name}` cannot be read as text"))?;
     let map = GridMap::new(alphabet, &text);
-    map.grid(alphabet.clone(), Labelling::Entry, steps.into())
+    map.grid(alphabet.clone(), args.labelling, args.steps.into())
         .with_context(|| format!("`--grid {name}` is no grid for this task"))
+}
+
+fn pool(path: &Path, alphabet: &Alphabet) -> anyhow::Result<Pool> {
+    let name = path.display();
+    let file = File::open(path).with_context(|| format!("`--pool {name}` cannot be read"))?;
+    PoolReader::read(alphabet.clone(), file)
+        .with_context(|| format!("`--pool {name}` is no pool for this task"))
 }

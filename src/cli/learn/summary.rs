@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use automata::Dfa;
+use automata::{Dfa, Word};
 use serde::Serialize;
 
 use super::{Args, check, doubts};
@@ -31,6 +31,9 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     doubted: Option<Vec<u32>>,
     hurried: u32,
+    /// A behaviour that would decide what nothing that can be shown does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beyond: Option<Vec<&'a str>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     conformance: Option<check::Checked>,
     question_ms: Milliseconds,
@@ -67,7 +70,9 @@ pub(super) fn tell(
     target: &Target,
     report: &Report<Dfa>,
     doubts: Option<&Doubts>,
+    beyond: Option<&Word>,
 ) -> anyhow::Result<()> {
+    let alphabet = target.dfa().alphabet();
     let counts = report.counts;
     let times = Milliseconds::of(&report.question_times);
     if args.format == Output::Json {
@@ -85,6 +90,7 @@ pub(super) fn tell(
             wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
             doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
             hurried: report.hurried,
+            beyond: beyond.map(|word| alphabet.spell(word).collect()),
             conformance: (report.check.as_ref())
                 .map(|check| check::Checked::of(check, counts.conformance)),
             question_ms: times,
@@ -103,6 +109,12 @@ pub(super) fn tell(
             target.name(),
             counted(args.max_questions, "question", "questions")
         ))?,
+    }
+    if let Some(word) = beyond {
+        output::line(format!(
+            "undecided: nothing that can be shown is like {}, where the automaton was chosen for its simplicity",
+            output::spelled(alphabet, word)
+        ))?;
     }
     if let Some(check) = &report.check {
         check::tell(check, args.max_questions)?;

@@ -8,6 +8,7 @@ use crate::bench::{Asked, Dropped};
 use crate::cli::output::{self, Output};
 use crate::evidence::{AnswerId, Comparison};
 use crate::learner::{Question, Reply};
+use crate::world::{Trajectory, World};
 
 /// One line of the trace for programs.
 #[derive(Serialize)]
@@ -22,6 +23,9 @@ struct Line<'a> {
     hypothesis: Option<&'a Dfa>,
     #[serde(skip_serializing_if = "Option::is_none")]
     word: Option<Vec<&'a str>>,
+    /// What shows the words of the question, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shown: Vec<Shown<'a>>,
     answer: &'static str,
     #[serde(rename = "word", skip_serializing_if = "Option::is_none")]
     counterexample: Option<Vec<&'a str>>,
@@ -30,6 +34,30 @@ struct Line<'a> {
     /// The number of the check that the question belongs to.
     #[serde(skip_serializing_if = "Option::is_none")]
     check: Option<u32>,
+}
+
+/// What shows a word.
+#[derive(Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Shown<'a> {
+    /// The rows and columns of a walk's cells, from its start.
+    Walk(Vec<[usize; 2]>),
+    /// The recording of this name.
+    Recording(&'a str),
+}
+
+impl<'a> Shown<'a> {
+    /// In this world; none where words are shown as they are.
+    fn of(world: &'a World, word: &Word) -> Option<Self> {
+        match world.trajectory(word)? {
+            Trajectory::Word(_) => None,
+            Trajectory::Walk { from, steps } => {
+                let cells = std::iter::once(from).chain(steps.iter().map(|step| step.to));
+                Some(Self::Walk(cells.map(|at| [at.row, at.column]).collect()))
+            }
+            Trajectory::Recording(recording) => Some(Self::Recording(&recording.id)),
+        }
+    }
 }
 
 /// One line about answers that contradict each other.
@@ -72,6 +100,7 @@ pub(super) fn conflict(format: Output, conflict: &Dropped) -> anyhow::Result<()>
 pub(super) fn line(
     format: Output,
     alphabet: &Alphabet,
+    world: Option<&World>,
     asked: &Asked<'_, Word, Dfa>,
 ) -> anyhow::Result<()> {
     for dropped in asked.conflicts {
@@ -105,6 +134,12 @@ pub(super) fn line(
         return output::line(format!("{number}. {question} {shown}"));
     }
     let spell = |word| Some(alphabet.spell(word).collect());
+    let show = |words: &[&Word]| match world {
+        Some(world) => (words.iter())
+            .filter_map(|word| Shown::of(world, word))
+            .collect(),
+        None => Vec::new(),
+    };
     let mut line = Line {
         question: number,
         kind: "",
@@ -112,6 +147,7 @@ pub(super) fn line(
         second: None,
         hypothesis: None,
         word: None,
+        shown: Vec::new(),
         answer,
         counterexample: None,
         label: None,
@@ -121,11 +157,13 @@ pub(super) fn line(
         Question::Membership { atom } => {
             line.kind = "membership";
             line.word = spell(atom);
+            line.shown = show(&[atom]);
         }
         Question::Comparison { first, second } => {
             line.kind = "comparison";
             line.first = spell(first);
             line.second = spell(second);
+            line.shown = show(&[first, second]);
         }
         Question::Equivalence { hypothesis } => {
             line.kind = "equivalence";

@@ -6,6 +6,7 @@ use clap::builder::PossibleValue;
 
 use crate::learner::Strategy;
 use crate::oracle::{Counterexamples, Order};
+use crate::world::grid::Labelling;
 
 /// A cost that may be infinite.
 pub(super) fn cost(text: &str) -> Result<f64, String> {
@@ -89,6 +90,20 @@ impl ValueEnum for Counterexamples {
             Self::Random => {
                 PossibleValue::new("random").help("any word of a random length, mostly up to 10")
             }
+        })
+    }
+}
+
+impl ValueEnum for Labelling {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Entry, Self::EveryStep]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(match self {
+            Self::Entry => PossibleValue::new("entry").help("when it is entered"),
+            Self::EveryStep => PossibleValue::new("every-step")
+                .help("with every step that ends on it, also with one that stays"),
         })
     }
 }

@@ -16,8 +16,6 @@ use crate::evidence::Budget;
 /// then so many times more, as often as this.
 const SPARE: usize = 4;
 const ROUNDS: usize = 3;
-/// Pairs of concepts that are one and are remembered.
-const PAIRS: usize = 32;
 
 impl Situated {
     /// As [`ConceptClass::sample`](crate::concept::ConceptClass::sample).
@@ -91,7 +89,6 @@ impl Situated {
     fn merge(&mut self, concepts: impl Iterator<Item = (Dfa, f64)>) -> Vec<(Dfa, f64)> {
         let mut places: HashMap<usize, usize> = HashMap::new();
         let mut merged: Vec<(Dfa, f64)> = Vec::new();
-        let mut pairs: Vec<(usize, Dfa)> = Vec::new();
         for (mut concept, log_weight) in concepts {
             let class = self.class_of(&concept);
             let place = *places.entry(class).or_insert(merged.len());
@@ -103,14 +100,7 @@ impl Situated {
             if simplicity(&concept) < simplicity(stands) {
                 std::mem::swap(stands, &mut concept);
             }
-            if pairs.len() < PAIRS {
-                pairs.push((place, concept));
-            }
         }
-        self.merged = pairs
-            .into_iter()
-            .map(|(place, other)| (merged[place].0.clone(), other))
-            .collect();
         merged
     }
 
@@ -124,7 +114,7 @@ impl Situated {
     }
 
     /// A feasible open word on which the two differ.
-    fn separate(&self, one: &Dfa, other: &Dfa) -> Option<Word> {
+    pub(super) fn separate(&self, one: &Dfa, other: &Dfa) -> Option<Word> {
         let listed = self.catalogue.difference(one, other);
         if listed.is_some() || self.catalogue.is_complete() {
             return listed.cloned();

@@ -2,6 +2,7 @@
 //! beforehand: only what can be shown and is open is asked, and what that does not
 //! tell apart is one.
 
+mod beyond;
 mod catalogue;
 mod classes;
 mod merge;
@@ -42,8 +43,6 @@ pub struct Situated {
     /// The answers that contradict what is known beforehand, and none for what was
     /// known from the start.
     refuted: Vec<Option<AnswerId>>,
-    /// Concepts that the last search found to be one, by pairs.
-    merged: Vec<(Dfa, Dfa)>,
 }
 
 impl Situated {
@@ -76,7 +75,6 @@ impl Situated {
             learned: Reduced::new(&frame, settings),
             classes: Classes::default(),
             refuted: Vec::new(),
-            merged: Vec::new(),
             frame,
             catalogue,
             prior,
@@ -129,26 +127,6 @@ impl Situated {
     /// Whether a word may be asked about: it is feasible and open.
     pub fn is_open(&self, word: &Word) -> bool {
         self.prior.settled(word).is_none() && self.world.is_feasible(word)
-    }
-
-    /// What the world lacks: the simplest open word, feasible or not, about which
-    /// nothing that can be shown tells. Some other consistent concept differs from
-    /// this one there, or it has a symbol that nothing shows. As of the last
-    /// question; none if nothing of the kind was met.
-    pub fn beyond(&self, hypothesis: &Dfa) -> Option<Word> {
-        let others = self
-            .merged
-            .iter()
-            .filter(|(stands, _)| stands == hypothesis);
-        let differences = others.map(|(stands, other)| self.open_difference(stands, other));
-        let never_shown = self.learned.ignored();
-        let unseen = product(&never_shown, self.prior.open(), |ignored, open| {
-            ignored && open
-        });
-        let languages = differences.chain([unseen]);
-        languages
-            .filter_map(|language| language.shortest_accepted())
-            .min()
     }
 
     /// The open words on which two concepts differ.
