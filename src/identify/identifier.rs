@@ -166,21 +166,23 @@ impl Identifier {
         budget: &mut Budget,
     ) -> Result<Spread<Dfa>, Failure> {
         let bound = self.settings.max_states;
-        let symbols = self.problem.alphabet().len();
         let known = self.particles.take().filter(|known| known.serve(wish));
-        let mut particles =
-            known.unwrap_or_else(|| Particles::new(symbols, bound, wish.decay, wish.seed));
+        let mut particles = known.unwrap_or_else(|| {
+            Particles::new(self.problem.alphabet(), bound, wish.decay, wish.seed)
+        });
         particles.hear(wish.heard);
         let listed = spread::list(&self.problem, &self.standing, bound, wish);
         let met = spread::met(self.problem.alphabet(), particles.met());
+        let astray = wish.heard.iter().flatten().all(|heard| heard.sure) && particles.are_astray();
         self.particles = Some(particles);
         if let Some(listed) = listed {
             return Ok(listed);
         }
-        if !met.concepts.is_empty() {
+        if !met.concepts.is_empty() && !astray {
             return Ok(met);
         }
-        // Whether anything is consistent, only a search can tell.
+        // Whether anything is consistent, only a search can tell; and what was met
+        // by chains that are astray says little of what is.
         let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
         Ok(spread::found(&smallest, bound, wish))
     }

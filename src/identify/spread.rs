@@ -124,7 +124,7 @@ pub(crate) fn found(smallest: &Sample, bound: usize, wish: &Wish<'_, Word>) -> S
 }
 
 /// The table of an automaton.
-fn table(dfa: &Dfa) -> Table {
+pub(crate) fn table(dfa: &Dfa) -> Table {
     let delta = dfa.states().flat_map(|state| {
         let targets = dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
         targets.map(|target| target.index() as u32)

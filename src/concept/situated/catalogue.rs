@@ -11,8 +11,6 @@ use crate::world::World;
 const WORDS: usize = 1000;
 /// The most nodes of the tree; long words need many.
 const NODES: usize = 4000;
-/// So many of them tell most concepts apart.
-const SIGNED: usize = 192;
 /// If the world lists fewer words than this, the others are searched for.
 const SEARCHED: usize = 128;
 
@@ -94,10 +92,11 @@ impl Catalogue {
             .map(|(_, word)| word)
     }
 
-    /// The labels of the first words, as bits.
-    pub(super) fn signature(&self, dfa: &Dfa) -> Vec<u64> {
-        let mut bits = vec![0; self.words.len().min(SIGNED).div_ceil(64)];
-        for (place, label) in self.labels(dfa).take(SIGNED).enumerate() {
+    /// The labels of the first `count` words, as bits.
+    pub(super) fn signature(&self, dfa: &Dfa, count: usize) -> Vec<u64> {
+        let count = count.min(self.words.len());
+        let mut bits = vec![0; count.div_ceil(64)];
+        for (place, label) in self.labels(dfa).take(count).enumerate() {
             bits[place / 64] |= u64::from(label) << (place % 64);
         }
         bits

@@ -9,17 +9,28 @@ use super::catalogue::Catalogue;
 
 /// As many concepts are remembered.
 const REMEMBERED: usize = 200_000;
+/// So many words of the catalogue tell most concepts apart.
+const SIGNED: usize = 192;
 
 /// The classes met so far. They save work and change no answer: to be told apart
 /// or not does not depend on who else was met.
 #[derive(Default)]
 pub(super) struct Classes {
     known: HashMap<Dfa, usize>,
-    /// The concepts that the first words of the catalogue do not tell apart.
-    groups: HashMap<Vec<u64>, Vec<Member>>,
-    /// Other words that told some concepts apart: they are likely to do so again.
+    /// By the labels of the first words of the catalogue.
+    groups: HashMap<Vec<u64>, Group>,
+    /// Words outside the catalogue that told some concepts apart: they are likely to do so again.
     telling: Vec<Word>,
     count: usize,
+}
+
+/// The concepts that the first words of the catalogue do not tell apart.
+#[derive(Default)]
+struct Group {
+    /// The first, while it is the only one: there is no need to look further.
+    lone: Option<Member>,
+    /// By the labels of all words of the catalogue.
+    parts: HashMap<Vec<u64>, Vec<Member>>,
 }
 
 /// One concept of a class, with the number of the class.
@@ -45,29 +56,44 @@ impl Classes {
             self.groups.clear();
             self.telling.clear();
         }
-        let group = self.groups.entry(catalogue.signature(dfa)).or_default();
-        let mut same = None;
-        for member in &*group {
+        let class = self.place(dfa, catalogue, separate);
+        self.known.insert(dfa.clone(), class);
+        class
+    }
+
+    /// The class of a concept that was not met before.
+    fn place(
+        &mut self,
+        dfa: &Dfa,
+        catalogue: &Catalogue,
+        separate: impl Fn(&Dfa, &Dfa) -> Option<Word>,
+    ) -> usize {
+        let group = (self.groups.entry(catalogue.signature(dfa, SIGNED))).or_default();
+        let mut own = || {
+            self.count += 1;
+            let (dfa, class) = (dfa.clone(), self.count);
+            Member { dfa, class }
+        };
+        if group.lone.is_none() && group.parts.is_empty() {
+            return group.lone.insert(own()).class;
+        }
+        if let Some(lone) = group.lone.take() {
+            let labels = catalogue.signature(&lone.dfa, usize::MAX);
+            group.parts.entry(labels).or_default().push(lone);
+        }
+        let labels = catalogue.signature(dfa, usize::MAX);
+        let alike = group.parts.entry(labels).or_default();
+        for member in &*alike {
             let differs = |word: &Word| member.dfa.accepts(word) != dfa.accepts(word);
             if self.telling.iter().any(differs) {
                 continue;
             }
-            if let Some(word) = separate(&member.dfa, dfa) {
-                self.telling.push(word);
-            } else {
-                same = Some(member.class);
-                break;
+            match separate(&member.dfa, dfa) {
+                Some(word) => self.telling.push(word),
+                None => return member.class,
             }
         }
-        let class = same.unwrap_or_else(|| {
-            self.count += 1;
-            group.push(Member {
-                dfa: dfa.clone(),
-                class: self.count,
-            });
-            self.count
-        });
-        self.known.insert(dfa.clone(), class);
-        class
+        alike.push(own());
+        self.count
     }
 }

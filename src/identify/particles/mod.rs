@@ -4,17 +4,19 @@
 //! likelihood", 1991).
 
 mod chain;
+mod guide;
 mod script;
 mod shape;
 mod visits;
 
 use std::collections::BTreeMap;
 
-use automata::Word;
+use automata::{Alphabet, Word};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use self::chain::{Ground, Machine, Mover};
+use self::guide::Guide;
 use self::script::Script;
 pub(crate) use self::script::Step;
 use self::shape::Shape;
@@ -39,6 +41,8 @@ const LEGS: usize = 16;
 const MOST: usize = 6;
 const AGREEING: usize = 5;
 const NEAR: f64 = 3.0;
+/// After so many answers in a row on which they never did, they are astray.
+const PATIENCE: usize = 12;
 /// A ladder is stuck if the best automaton in it is less likely than that of
 /// another by this logarithm.
 const HOPELESS: f64 = 6.0;
@@ -54,12 +58,22 @@ pub(crate) struct Particles {
     heard: Vec<Vec<Heard<Word>>>,
     script: Script,
     belief: Belief,
-    /// Where the chains were at the start and after every answer, so that an
-    /// answer can be taken back.
-    past: Vec<Places>,
+    guide: Guide,
+    /// The stage at the start and after every answer, so that an answer can be
+    /// taken back.
+    past: Vec<Stage>,
     /// The consistent automata met since the last answer, with their shares of the
     /// posterior, up to a number that all share.
     met: BTreeMap<Table, f64>,
+}
+
+/// What goes on from one answer to the next.
+struct Stage {
+    places: Places,
+    /// The size that the guide knows to be needed.
+    at_least: usize,
+    /// Of the last answers, on how many in a row the ladders disagreed.
+    astray: usize,
 }
 
 /// The table at which every chain is, by ladder and level.
@@ -67,9 +81,10 @@ type Places = Vec<[(Vec<u8>, Vec<bool>); LEVELS.len()]>;
 
 impl Particles {
     /// Chains that heard nothing.
-    pub(crate) fn new(symbols: usize, most: usize, decay: f64, seed: u64) -> Self {
+    pub(crate) fn new(alphabet: &Alphabet, most: usize, decay: f64, seed: u64) -> Self {
+        let symbols = alphabet.len();
         let trivial = |number: usize| (vec![0; symbols], vec![number.is_multiple_of(2)]);
-        let start = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
+        let places = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
         Self {
             symbols,
             seed,
@@ -78,17 +93,13 @@ impl Particles {
             heard: Vec::new(),
             script: Script::new(symbols),
             belief: Belief::new(0),
-            past: vec![start],
+            guide: Guide::new(alphabet.clone()),
+            past: vec![Stage {
+                places,
+                at_least: 1,
+                astray: 0,
+            }],
             met: BTreeMap::new(),
-        }
-    }
-
-    fn ground(&self) -> Ground<'_> {
-        Ground {
-            shape: &self.shape,
-            script: &self.script,
-            belief: &self.belief,
-            symbols: self.symbols,
         }
     }
 
@@ -111,36 +122,45 @@ impl Particles {
             self.heard.truncate(common);
             self.past.truncate(common + 1);
             self.script = Script::new(self.symbols);
+            self.guide.restart(self.past[common].at_least);
             for heard in self.heard.iter().flatten() {
                 self.script.add(heard);
+                self.guide.add(heard);
             }
         }
         for answer in &heard[common..] {
             self.heard.push(answer.clone());
             for heard in answer {
                 self.script.add(heard);
+                self.guide.add(heard);
             }
             self.belief = Belief::new(self.script.len());
-            let (places, met) = self.travel();
-            self.past.push(places);
+            let (stage, met) = self.travel();
+            self.past.push(stage);
             self.met = met;
         }
     }
 
     /// Where all chains come to from where they were, and what they meet.
-    fn travel(&self) -> (Places, BTreeMap<Table, f64>) {
+    fn travel(&mut self) -> (Stage, BTreeMap<Table, f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(self.heard.len() as u64);
-        let ground = self.ground();
+        let ground = Ground {
+            shape: &self.shape,
+            script: &self.script,
+            belief: &self.belief,
+            symbols: self.symbols,
+        };
         let machine = |(delta, output): &(Vec<u8>, Vec<bool>)| {
             Machine::new(delta.clone(), output.clone(), &ground)
         };
         let start = self.past.last().expect("the start is never taken back");
-        let mut machines: Vec<[Machine; LEVELS.len()]> = (start.iter())
+        let mut machines: Vec<[Machine; LEVELS.len()]> = (start.places.iter())
             .map(|ladder| ladder.each_ref().map(machine))
             .collect();
         let mut mover = Mover::default();
         let mut visits = Visits::default();
+        let mut guiding = None;
         for _ in 0..MOST {
             for (number, ladder) in machines.iter_mut().enumerate() {
                 let mut visit = |machine: &Machine| visits.add(number, machine);
@@ -149,12 +169,31 @@ impl Particles {
             if visits.agree() {
                 break;
             }
+            let guide = &mut self.guide;
+            let found = guiding.get_or_insert_with(|| guide.find(&ground, self.seed));
+            if let Some(found) = found {
+                follow(&mut machines, found);
+            }
         }
+        let astray = if visits.agree() { 0 } else { start.astray + 1 };
         let met = visits.shares();
         migrate(&mut machines);
         let place = |machine: Machine| (machine.delta, machine.output);
         let places = machines.into_iter().map(|ladder| ladder.map(place));
-        (places.collect(), met)
+        let stage = Stage {
+            places: places.collect(),
+            at_least: self.guide.at_least(),
+            astray,
+        };
+        (stage, met)
+    }
+
+    /// Whether the chains found no likely place for so long that nothing should be
+    /// built on what they met.
+    pub(crate) fn are_astray(&self) -> bool {
+        self.past
+            .last()
+            .is_some_and(|stage| stage.astray >= PATIENCE)
     }
 
     /// The consistent automata met since the last answer, with their shares of the
@@ -194,20 +233,34 @@ fn travel(
     }
 }
 
+/// The chance of the likeliest machine of a ladder, as a logarithm.
+fn best(ladder: &[Machine; LEVELS.len()]) -> f64 {
+    (ladder.iter().map(Machine::log_chance)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The places of the ladders that are worst off and best off.
+fn extremes(machines: &[[Machine; LEVELS.len()]]) -> Option<[usize; 2]> {
+    let order =
+        |one: &usize, other: &usize| best(&machines[*one]).total_cmp(&best(&machines[*other]));
+    let worst = (0..machines.len()).min_by(order)?;
+    Some([worst, (0..machines.len()).max_by(order)?])
+}
+
+/// Lets the ladder that is worst off go on from what the guide found.
+fn follow(machines: &mut [[Machine; LEVELS.len()]], found: &Machine) {
+    if let Some([worst, _]) = extremes(machines)
+        && found.log_chance() - best(&machines[worst]) > HOPELESS
+    {
+        machines[worst][0] = found.clone();
+    }
+}
+
 /// Lets the ladder that is worst off start from where the best one is.
 fn migrate(machines: &mut [[Machine; LEVELS.len()]]) {
-    let chance = |ladder: &[Machine; LEVELS.len()]| {
-        (ladder.iter().map(Machine::log_chance)).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let order =
-        |one: &usize, other: &usize| chance(&machines[*one]).total_cmp(&chance(&machines[*other]));
-    let best = (0..machines.len()).max_by(order);
-    let worst = (0..machines.len()).min_by(order);
-    if let (Some(best), Some(worst)) = (best, worst)
-        && chance(&machines[best]) - chance(&machines[worst]) > HOPELESS
+    if let Some([worst, top]) = extremes(machines)
+        && best(&machines[top]) - best(&machines[worst]) > HOPELESS
     {
-        let best = machines[best].clone();
-        machines[worst] = best;
+        machines[worst] = machines[top].clone();
     }
 }
 
