@@ -1,6 +1,7 @@
 //! The strategy by posterior: it ends with the target, asks nothing that is
 //! implied, and is a fold like the others.
 
+use automata::{Alphabet, Dfa};
 use memrep::bench::{process_cpu, teach};
 use memrep::concept::{DfaClass, FiniteConcept};
 use memrep::evidence::AnswerId;
@@ -48,6 +49,34 @@ fn every_target_is_learned() {
             assert_eq!(report.dropped, 0, "the teacher does not err");
         }
     }
+}
+
+/// A target on which chains alone went on for ever among larger automata.
+#[test]
+fn chains_that_lose_their_way_are_led_back() {
+    let rows = [
+        [1, 2, 2, 3],
+        [3, 0, 4, 0],
+        [0, 1, 0, 2],
+        [3, 4, 0, 1],
+        [2, 4, 4, 4],
+    ];
+    let alphabet = Alphabet::new(["a", "b", "c", "d"]).unwrap();
+    let accepting = vec![true, true, false, true, false];
+    let dfa = Dfa::new(alphabet, 0, accepting, &rows.map(Vec::from)).unwrap();
+    let target = Target::automaton("drawn", &dfa);
+    let config = Config {
+        membership_cost: 4.0,
+        ..config(Strategy::Bayes, 0)
+    };
+    let mut learner = Learner::new(automata(&target), config, Vec::new());
+    let settings = TeacherSettings {
+        counterexamples: Counterexamples::Random,
+        ..TeacherSettings::default()
+    };
+    let mut teacher = ScriptedTeacher::new(&target, settings);
+    let report = teach(&mut learner, &mut teacher, 120, process_cpu, |_| ()).unwrap();
+    assert_eq!(report.learned, Some(dfa.canonical()));
 }
 
 proptest! {

@@ -260,7 +260,8 @@ fn migrate(machines: &mut [[Machine; LEVELS.len()]]) {
     if let Some([worst, top]) = extremes(machines)
         && best(&machines[top]) - best(&machines[worst]) > HOPELESS
     {
-        machines[worst] = machines[top].clone();
+        let top = machines[top].clone();
+        machines[worst] = top;
     }
 }
 
