@@ -74,7 +74,7 @@ async fn create(State(app): State<AppState>, body: Body) -> Result<Response, Api
             .into());
         }
     };
-    let setup = Setup::from_json(&fields)?;
+    let setup = Setup::of(&task).with(&fields)?;
     let id = app.teaching.create(task, setup).await?;
     Ok((StatusCode::CREATED, Json(json!({"id": id.to_string()}))).into_response())
 }

@@ -4,9 +4,9 @@
 use automata::Word;
 
 use super::event::{Event, ReplyText};
-use super::task::MAX_STATES;
 use super::{Position, Session};
 use crate::learner::{Question, Reply};
+use crate::task::MAX_STATES;
 
 /// What becomes of a wish.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,34 +8,29 @@
 //! → (append) → [`Session::apply`]: what the learner makes of an answer is an
 //! entry of its own, so that it is computed once and shown for ever after.
 
-mod automaton;
 mod config;
 mod decide;
 mod event;
 mod explain;
-mod reader;
 mod ready;
-mod task;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use automata::{Alphabet, Dfa, Word};
 
-pub use automaton::Automaton;
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
-pub use reader::{Fields, Malformed};
 pub use ready::{NAMES as READY_NAMES, offered, ready};
-pub use task::{
-    DEFAULT_STATES, Example, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD, SymbolText, Task,
-    read_word,
-};
 
 use crate::concept::DfaClass;
 use crate::evidence::AnswerId;
 use crate::identify::Settings;
 use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
+pub use crate::task::{
+    Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
+    Malformed, SymbolText, Task, read_word,
+};
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
