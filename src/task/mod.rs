@@ -175,6 +175,11 @@ impl Task {
         situation::build(world, prior, "prior").map(Some)
     }
 
+    /// What stands for each symbol in the map of a grid.
+    pub fn marks(&self) -> impl Iterator<Item = (char, Symbol)> {
+        symbols::marks(&self.symbols)
+    }
+
     /// What people read for a symbol of [`Task::alphabet`].
     pub fn text(&self, symbol: Symbol) -> &str {
         self.symbols[symbol.index()].text()
@@ -348,97 +353,4 @@ fn suits(
 }
 
 #[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-
-    #[test]
-    fn a_task_survives_its_log() {
-        let task = Task::from_json(&json!({
-            "title": "Tea",
-            "symbols": ["a", {"name": "b", "word": "water"}],
-            "examples": [{"word": [], "label": false}, {"word": ["b", "a"], "label": true}],
-            "max_states": 7,
-            "guidelines": "first water,\nthen tea",
-        }))
-        .unwrap();
-        let again: Task = serde_json::from_value(serde_json::to_value(&task).unwrap()).unwrap();
-        assert_eq!(task, again);
-        assert_eq!(task.text(Symbol::new(1)), "water");
-        assert_eq!(task.known(&task.alphabet()).len(), 2);
-    }
-
-    #[test]
-    fn every_fault_is_named_with_its_path() {
-        let cases = [
-            (json!([]), "", "object"),
-            (json!({}), "symbols", "give the names"),
-            (json!({"symbols": []}), "symbols", "empty"),
-            (json!({"symbols": "ab"}), "symbols", "array"),
-            (json!({"symbols": ["a", "a"]}), "symbols[1]", "twice"),
-            (json!({"symbols": ["a", "b c"]}), "symbols[1]", "`b c`"),
-            (json!({"symbols": ["a", 3]}), "symbols[1]", "as its name"),
-            (
-                json!({"symbols": [{"name": "a", "colour": 1}]}),
-                "symbols[0].colour",
-                "unknown",
-            ),
-            (
-                json!({"symbols": [{"word": "a"}]}),
-                "symbols[0]",
-                "no `name`",
-            ),
-            (
-                json!({"symbols": ["a"], "sybmols": 1}),
-                "sybmols",
-                "unknown",
-            ),
-            (
-                json!({"symbols": ["a"], "target": "tomita:1"}),
-                "target",
-                "leave `target` out",
-            ),
-            (
-                json!({"symbols": ["a"], "max_states": 0}),
-                "max_states",
-                "between 1 and 100",
-            ),
-            (
-                json!({"symbols": ["a"], "max_states": 2.5}),
-                "max_states",
-                "whole number",
-            ),
-            (
-                json!({"symbols": ["a"], "title": "x\u{202e}y"}),
-                "title",
-                "control",
-            ),
-            (
-                json!({"symbols": ["a"], "examples": [{"word": ["b"], "label": true}]}),
-                "examples[0].word[0]",
-                "`b` is not a symbol",
-            ),
-            (
-                json!({"symbols": ["a"], "examples": [{"word": ["a"]}]}),
-                "examples[0].label",
-                "true",
-            ),
-            (
-                json!({"symbols": ["a"], "examples": [{"label": true}]}),
-                "examples[0]",
-                "no `word`",
-            ),
-            (
-                json!({"symbols": ["a"], "examples": [{"word": ["a"], "label": true}, {"word": ["a"], "label": false}]}),
-                "examples[1]",
-                "examples[0]",
-            ),
-        ];
-        for (input, path, part) in cases {
-            let error = Task::from_json(&input).unwrap_err();
-            assert_eq!(error.path, path, "{input}: {error}");
-            assert!(error.message.contains(part), "{input}: {error}");
-        }
-    }
-}
+mod tests;

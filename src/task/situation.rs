@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use automata::format::{dot, json};
-use automata::{Alphabet, Dfa, Symbol, Word};
+use automata::{Alphabet, Dfa, Word};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::automaton::{Automaton, over};
 use super::reader::{Faults, Fields, Malformed};
-use super::symbols::SymbolText;
+use super::symbols::{SymbolText, marks};
 use crate::concept::{Prior, PriorError, Template, TemplateError};
 use crate::world::grid::{Grid, GridError, GridMap, Labelling, MOST_STEPS};
 use crate::world::pool::PoolReader;
@@ -346,11 +346,9 @@ fn build_grid(
     labelling: Labelling,
     steps: usize,
 ) -> Result<Grid, Malformed> {
-    let marks = (symbols.iter().enumerate())
-        .filter_map(|(i, symbol)| Some((symbol.mark()?, Symbol::new(i))));
     let map = GridMap {
         rows: map.iter().map(String::as_str).collect(),
-        marks: marks.collect(),
+        marks: marks(symbols).collect(),
     };
     map.grid(alphabet, labelling, steps).map_err(|error| {
         let path = match &error {

@@ -1,6 +1,6 @@
 //! The symbols of a task as people see them: a word, a colour and a letter each.
 
-use automata::{Alphabet, AlphabetError};
+use automata::{Alphabet, AlphabetError, Symbol};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -95,6 +95,12 @@ impl Colour {
     pub fn hex(&self) -> &str {
         &self.0
     }
+}
+
+/// What stands for each symbol in the map of a grid.
+pub(super) fn marks(symbols: &[SymbolText]) -> impl Iterator<Item = (char, Symbol)> {
+    let numbered = symbols.iter().enumerate();
+    numbered.filter_map(|(i, symbol)| Some((symbol.mark()?, Symbol::new(i))))
 }
 
 /// The alphabet under `symbols`, and the colours under `colours`.

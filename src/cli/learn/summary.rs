@@ -67,6 +67,7 @@ fn rounded(number: f64) -> f64 {
 /// Tells what came of it.
 pub(super) fn tell(
     args: &Args,
+    strategy: Strategy,
     target: &Target,
     report: &Report<Dfa>,
     doubts: Option<&Doubts>,
@@ -78,7 +79,7 @@ pub(super) fn tell(
     if args.format == Output::Json {
         let summary = Summary {
             target: target.name(),
-            strategy: args.strategy,
+            strategy,
             seed: args.seed,
             equivalent: report.learned.is_some(),
             states: report.learned.as_ref().map(Dfa::size),
