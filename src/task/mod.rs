@@ -229,7 +229,10 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     let world = situation::read_world(&fields, files, &mut faults);
     let prior = situation::read_prior(&fields, &alphabet, files, &mut faults);
     let mut built = None;
+    // Without its letters a map would be called wrong for no fault of its own.
+    let lettered = !faults.0.iter().any(|fault| fault.path.ends_with(".letter"));
     if let (Some(world), Some((text, prior))) = (&world, &prior)
+        && lettered
         && (world.is_some() || !text.is_empty())
     {
         let path = if text.is_empty() { "world" } else { "prior" };
@@ -313,7 +316,10 @@ fn suits(
     alphabet: &Alphabet,
     situation: Option<&Situation>,
 ) -> Result<(), Malformed> {
-    let spell = |word: &Word| alphabet.spell(word).collect::<Vec<_>>().join(" ");
+    let spell = |word: &Word| {
+        let names: Vec<&str> = alphabet.spell(word).collect();
+        format!("[{}]", names.join(", "))
+    };
     for example in examples {
         if let Ok(word) = alphabet.word(&example.word)
             && target.accepts(&word) != example.label
@@ -322,7 +328,7 @@ fn suits(
             return Err(Malformed::new(
                 "target",
                 format!(
-                    "the target {verb} the example `{}`: correct one of them",
+                    "the target {verb} the example {}: correct one of them",
                     spell(&word)
                 ),
             ));
@@ -344,7 +350,7 @@ fn suits(
             Err(Malformed::new(
                 "target",
                 format!(
-                    "the target {verb} `{}`, and what is known beforehand (`prior`) says the opposite: correct one of them",
+                    "the target {verb} {}, and what is known beforehand (`prior`) says the opposite: correct one of them",
                     spell(&word)
                 ),
             ))

@@ -270,7 +270,7 @@ fn the_template_is_a_task() {
 #[test]
 fn a_file_is_told_all_its_faults() {
     let text = TEMPLATE
-        .replace("letter = \"K\"", "letter = \"Kettle\"")
+        .replace("\"#d55e00\"", "\"#d55e0\"")
         .replace("..P..C", "..P.?C")
         .replace("membership = 4 ", "membership = -4")
         .replace("label = false", "label = 0");
@@ -289,18 +289,22 @@ fn a_file_is_told_all_its_faults() {
         places,
         [
             ("costs.membership", line("membership = -4"), 14),
-            ("symbols[0].letter", line("\"Kettle\""), 10),
-            ("world.map[0][0]", line("K..#.."), 1),
+            ("symbols[0].colour", line("\"#d55e0\""), 10),
+            ("world.map[1][4]", line("..P.?C"), 5),
             ("examples[1].label", line("label = 0"), 9),
         ]
     );
+    // A letter that is none is one fault, and not another one in the map.
+    let text = TEMPLATE.replace("letter = \"K\"", "letter = \"Kettle\"");
+    let faults = TaskFile::from_toml(&text, std::path::Path::new("")).unwrap_err();
+    assert_eq!(faults.len(), 1, "{faults:?}");
 }
 
 #[test]
 fn a_target_says_what_examples_and_prior_say() {
     for (instead, part) in [
         ("[\"kettle before cup\"]", "says the opposite"),
-        ("\"avoid kettle\"", "rejects the example `kettle cup`"),
+        ("\"avoid kettle\"", "rejects the example [kettle, cup]"),
         ("\"tomita:4\"", "the automaton is over"),
         ("\"nonsense\"", "`avoid X`"),
         ("\"nonsense.json\"", "cannot read it"),

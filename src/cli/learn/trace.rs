@@ -8,7 +8,7 @@ use crate::bench::{Asked, Dropped};
 use crate::cli::output::{self, Output};
 use crate::evidence::{AnswerId, Comparison};
 use crate::learner::{Question, Reply};
-use crate::world::{Trajectory, World};
+use crate::world::{Shown, World};
 
 /// One line of the trace for programs.
 #[derive(Serialize)]
@@ -34,30 +34,6 @@ struct Line<'a> {
     /// The number of the check that the question belongs to.
     #[serde(skip_serializing_if = "Option::is_none")]
     check: Option<u32>,
-}
-
-/// What shows a word.
-#[derive(Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Shown<'a> {
-    /// The rows and columns of a walk's cells, from its start.
-    Walk(Vec<[usize; 2]>),
-    /// The recording of this name.
-    Recording(&'a str),
-}
-
-impl<'a> Shown<'a> {
-    /// In this world; none where words are shown as they are.
-    fn of(world: &'a World, word: &Word) -> Option<Self> {
-        match world.trajectory(word)? {
-            Trajectory::Word(_) => None,
-            Trajectory::Walk { from, steps } => {
-                let cells = std::iter::once(from).chain(steps.iter().map(|step| step.to));
-                Some(Self::Walk(cells.map(|at| [at.row, at.column]).collect()))
-            }
-            Trajectory::Recording(recording) => Some(Self::Recording(&recording.id)),
-        }
-    }
 }
 
 /// One line about answers that contradict each other.
@@ -136,7 +112,7 @@ pub(super) fn line(
     let spell = |word| Some(alphabet.spell(word).collect());
     let show = |words: &[&Word]| match world {
         Some(world) => (words.iter())
-            .filter_map(|word| Shown::of(world, word))
+            .filter_map(|word| world.shown(word))
             .collect(),
         None => Vec::new(),
     };
