@@ -1,5 +1,6 @@
 //! The experiments: which targets, which teacher, how many runs.
 
+use super::case::Case;
 use super::contender::{CONTENDERS, Contender};
 use crate::oracle::{Counterexamples, Order, Shape, Target, TargetError};
 
@@ -73,7 +74,7 @@ impl Experiment {
                 "The targets are the words without a run of more than 1, 2, 3 and 4 zeros; that the empty word is accepted is known at the start."
             }
             Self::Robot => {
-                "The target is the task of Fig. 5.2: reach the recharge tile, never touch lava, and after water be dried first. The labels of eleven words are known at the start, and the rest of the prior knowledge is not used."
+                "The target is the task of Fig. 5.2: reach the recharge tile, never touch lava, and after water be dried first. The labels of eleven words are known at the start; in the second and third row also RY (`avoid R` and `reach Y`), so that BBY is learned, and in the third only what a walk of up to 40 steps through a room can show is asked about. That no question there is about a behaviour that is settled or cannot happen was checked in every run."
             }
             Self::Random => {
                 "The targets are minimal automata with 3 to 8 states over 2 to 4 letters, with edges and labels drawn evenly; nothing is known at the start. `memrep learn --target random:N` teaches the one of number N."
@@ -98,19 +99,19 @@ impl Experiment {
     /// # Errors
     ///
     /// If a target cannot be made; no target of the suite does that.
-    pub fn targets(self, drawn: u64) -> Result<Vec<Target>, TargetError> {
+    pub fn targets(self, drawn: u64) -> Result<Vec<Case>, TargetError> {
         if let Some(shape) = self.drawn() {
-            return Ok((0..drawn).map(|n| Target::drawn(shape, n)).collect());
+            return Ok((0..drawn).map(|n| Target::drawn(shape, n).into()).collect());
         }
         let (family, numbers) = match self {
             Self::Modulo => ("modulo", &[5, 10, 20, 40][..]),
             Self::Zeros => ("zeros", &[1, 2, 3, 4][..]),
-            Self::Robot => return Ok(vec![Target::named("robot")?]),
+            Self::Robot => return Case::robot(),
             _ => ("tomita", &[1, 2, 3, 4, 5, 6, 7][..]),
         };
         numbers
             .iter()
-            .map(|number| Target::named(&format!("{family}:{number}")))
+            .map(|number| Ok(Target::named(&format!("{family}:{number}"))?.into()))
             .collect()
     }
 
@@ -170,7 +171,7 @@ pub struct Plan {
     /// Which experiment.
     pub experiment: Experiment,
     /// The targets.
-    pub targets: Vec<Target>,
+    pub targets: Vec<Case>,
     /// Who takes part.
     pub contenders: Vec<&'static Contender>,
     /// The costs of a membership query; none: comparisons are never asked.

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::case::Case;
 use super::contender::{BASE, RIVALS};
 use super::experiment::Plan;
 use super::run::Run;
@@ -41,19 +42,22 @@ impl Results {
     pub fn groups(&self) -> Vec<Group> {
         let targets = &self.plan.targets;
         if self.plan.experiment.drawn().is_none() {
-            let group = |(place, target): (usize, &crate::oracle::Target)| Group {
+            let group = |(place, target): (usize, &Case)| Group {
                 name: target.name().to_owned(),
                 targets: vec![place],
             };
             return targets.iter().enumerate().map(group).collect();
         }
-        let mut sizes: Vec<usize> = targets.iter().map(|target| target.dfa().size()).collect();
+        let mut sizes: Vec<usize> = targets
+            .iter()
+            .map(|case| case.target().dfa().size())
+            .collect();
         sizes.sort_unstable();
         sizes.dedup();
         let group = |size| Group {
             name: format!("{size} states"),
             targets: (0..targets.len())
-                .filter(|&place| targets[place].dfa().size() == size)
+                .filter(|&place| targets[place].target().dfa().size() == size)
                 .collect(),
         };
         sizes.into_iter().map(group).collect()

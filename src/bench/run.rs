@@ -1,20 +1,23 @@
 //! Does what a plan says: one scripted run after the other, on all cores.
 
+use std::sync::Arc;
 use std::time::Duration;
 
+use automata::{Dfa, Word};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
+use super::case::Setting;
 use super::clock::thread_cpu;
 use super::contender::Contender;
 use super::experiment::Plan;
-use super::trial::{TrialError, teach};
-use crate::concept::DfaClass;
+use super::trial::{Report, TrialError, teach};
+use crate::concept::{DfaClass, PriorError};
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Counts, EQUIVALENCE_COST, Learner};
-use crate::oracle::{ScriptedTeacher, TeacherSettings};
+use crate::learner::{Config, Counts, EQUIVALENCE_COST, Learner, Question};
+use crate::oracle::{ScriptedTeacher, SituatedTeacher, Target, TeacherSettings};
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -76,7 +79,18 @@ pub struct RunError {
     target: String,
     contender: &'static str,
     seed: u64,
-    source: TrialError,
+    source: Box<Fault>,
+}
+
+/// Why it could not.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum Fault {
+    #[error("{0}")]
+    Trial(#[from] TrialError),
+    #[error("{0}")]
+    Prior(#[from] PriorError),
+    #[error("question {number} is about a behaviour that is settled or cannot happen")]
+    Settled { number: u32 },
 }
 
 /// More questions than any run should need.
@@ -147,38 +161,30 @@ pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError
 }
 
 fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
-    let target = &plan.targets[job.target];
+    let case = &plan.targets[job.target];
+    let target = case.target();
     let noisy = plan.errors.iter().any(|&errors| errors > 0);
     let settings = Settings {
         engine: EngineChoice::Auto,
         max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
     };
-    let class = DfaClass::new(target.dfa().alphabet().clone(), settings);
     let config = job.contender.config(job.cost, job.seed);
-    let mut learner = Learner::new(class, config, target.known().to_vec());
-    let settings = TeacherSettings {
+    let teacher = TeacherSettings {
         order: plan.order,
         counterexamples: plan.counterexamples,
         error_rate: f64::from(job.errors) / 100.0,
         seed: job.seed,
     };
-    let mut teacher = ScriptedTeacher::new(target, settings);
-    let report = teach(
-        &mut learner,
-        &mut teacher,
-        MAX_QUESTIONS,
-        thread_cpu,
-        |_| {},
-    )
+    let (report, equivalent) = match case.setting() {
+        None => alone(target, config, settings, teacher),
+        Some(setting) => situated(target, setting, config, settings, teacher),
+    }
     .map_err(|source| RunError {
-        target: target.name().to_owned(),
+        target: case.name().to_owned(),
         contender: job.contender.key,
         seed: job.seed,
-        source,
+        source: Box::new(source),
     })?;
-    let equivalent = report
-        .learned
-        .is_some_and(|learned| learned.is_equivalent(target.dfa()) == Ok(true));
     Ok(Run {
         target: job.target,
         contender: job.contender.key,
@@ -191,4 +197,68 @@ fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
         hurried: report.hurried,
         question_times: report.question_times,
     })
+}
+
+/// A run in which all words can be shown, and whether it ended equivalent.
+fn alone(
+    target: &Target,
+    config: Config,
+    settings: Settings,
+    teacher: TeacherSettings,
+) -> Result<(Report<Dfa>, bool), Fault> {
+    let class = DfaClass::new(target.dfa().alphabet().clone(), settings);
+    let mut learner = Learner::new(class, config, target.known().to_vec());
+    let mut teacher = ScriptedTeacher::new(target, teacher);
+    let report = teach(
+        &mut learner,
+        &mut teacher,
+        MAX_QUESTIONS,
+        thread_cpu,
+        |_| {},
+    )?;
+    let learned = report.learned.as_ref();
+    let equivalent = learned.is_some_and(|dfa| dfa.is_equivalent(target.dfa()) == Ok(true));
+    Ok((report, equivalent))
+}
+
+/// A run in a setting, and whether what it learned agrees with the target there.
+/// That no question is settled or impossible is checked.
+fn situated(
+    target: &Target,
+    setting: &Setting,
+    config: Config,
+    settings: Settings,
+    teacher: TeacherSettings,
+) -> Result<(Report<Dfa>, bool), Fault> {
+    let class = setting.class(settings)?;
+    let known = class.examples(target.known())?;
+    let mut learner = Learner::new(class, config, known);
+    let open = setting.prior.open().clone();
+    let mut teacher = SituatedTeacher::new(Arc::clone(&setting.world), open, target, teacher);
+    let mut settled = None;
+    let report = teach(
+        &mut learner,
+        &mut teacher,
+        MAX_QUESTIONS,
+        thread_cpu,
+        |asked| {
+            let words = match asked.question {
+                Question::Membership { atom } => vec![atom],
+                Question::Comparison { first, second } => vec![first, second],
+                Question::Equivalence { .. } => Vec::new(),
+            };
+            let is_open = |word: &&Word| {
+                setting.prior.settled(word).is_none() && setting.world.is_feasible(word)
+            };
+            if !words.iter().all(is_open) {
+                settled.get_or_insert(asked.number);
+            }
+        },
+    )?;
+    if let Some(number) = settled {
+        return Err(Fault::Settled { number });
+    }
+    let learned = report.learned.as_ref();
+    let equivalent = learned.is_some_and(|part| setting.difference(part, target.dfa()).is_none());
+    Ok((report, equivalent))
 }

@@ -31,10 +31,10 @@ pub fn csv(results: &Results) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(HEADER)?;
     for run in &results.runs {
-        let target = &results.plan.targets[run.target];
-        let dfa = target.dfa();
+        let case = &results.plan.targets[run.target];
+        let dfa = case.target().dfa();
         let record = [
-            target.name().to_owned(),
+            case.name().to_owned(),
             dfa.size().to_string(),
             dfa.alphabet().len().to_string(),
             run.contender.to_owned(),
