@@ -177,9 +177,9 @@ fn faults_are_told_by_line_and_column() {
             "room.toml:10:3: world.map[0][2]: the tile `a` at row 1, column 3 cannot be reached",
         ),
         (
-            "true",
-            "false",
-            "room.toml:4:3: examples[0]: this is not acceptable and what is known",
+            "word = [\"b\"]",
+            "word = [\"a\"]",
+            "room.toml:4:3: examples[0]: this is acceptable and what is known",
         ),
         (
             "word = [\"b\"]",

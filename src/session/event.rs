@@ -24,7 +24,7 @@ pub enum Event {
         /// The version of memrep that wrote it.
         memrep: String,
         /// What is taught.
-        task: Task,
+        task: Box<Task>,
         /// How questions are chosen.
         setup: Setup,
     },

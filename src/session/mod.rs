@@ -102,7 +102,7 @@ impl Session {
         Event::Created {
             log: LOG_VERSION,
             memrep: env!("CARGO_PKG_VERSION").to_owned(),
-            task,
+            task: Box::new(task),
             setup,
         }
     }
@@ -131,7 +131,7 @@ impl Session {
                 "it is of version {log}, and this memrep reads version {LOG_VERSION}: use the memrep that wrote it"
             )));
         }
-        let fresh = Self::new(task.clone(), setup.clone());
+        let fresh = Self::new(Task::clone(task), setup.clone());
         let mut session = fresh.map_err(|message| corrupt(&message))?;
         for event in rest {
             session.apply(event)?;

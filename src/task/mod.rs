@@ -226,13 +226,15 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     let Some((symbols, alphabet)) = symbols::read(&fields, &mut faults) else {
         return Err(faults.0);
     };
-    let world = situation::read_world(&fields, files, &mut faults);
+    let told = fields.get("world");
+    let world = told.and_then(|value| situation::read_world(value, files, &mut faults));
     let prior = situation::read_prior(&fields, &alphabet, files, &mut faults);
     let mut built = None;
     // Without its letters a map would be called wrong for no fault of its own.
     let lettered = !faults.0.iter().any(|fault| fault.path.ends_with(".letter"));
-    if let (Some(world), Some((text, prior))) = (&world, &prior)
+    if let Some((text, prior)) = &prior
         && lettered
+        && world.is_some() == told.is_some()
         && (world.is_some() || !text.is_empty())
     {
         let path = if text.is_empty() { "world" } else { "prior" };
@@ -263,7 +265,7 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
         max_states: max_states.unwrap_or(DEFAULT_STATES),
         guidelines: guidelines.unwrap_or_default(),
         empty: empty.unwrap_or_else(|| "nothing happens".to_owned()),
-        world: world.flatten(),
+        world,
         prior: prior.map(|(text, _)| text).unwrap_or_default(),
         costs: costs.unwrap_or_default(),
         strategy,

@@ -222,15 +222,12 @@ pub(super) fn read_prior(
     Some((PriorText { holds, suffices }, faults.keep(prior)?))
 }
 
-/// What stands under `world`; the outer none is a fault.
+/// What stands under `world`; none, and a fault is kept, if it is no world.
 pub(super) fn read_world(
-    fields: &Fields<'_>,
+    value: &Value,
     files: Files<'_>,
     faults: &mut Faults,
-) -> Option<Option<WorldText>> {
-    let Some(value) = fields.get("world") else {
-        return Some(None);
-    };
+) -> Option<WorldText> {
     let fields = faults.keep(Fields::of(value, "world"))?;
     let kind = faults.keep(fields.text("kind", 60))?.unwrap_or_default();
     let world = match kind.as_str() {
@@ -266,7 +263,7 @@ pub(super) fn read_world(
             return None;
         }
     };
-    Some(Some(world))
+    Some(world)
 }
 
 fn read_map(fields: &Fields<'_>) -> Result<Vec<String>, Malformed> {

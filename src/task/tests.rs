@@ -150,11 +150,20 @@ fn a_task_without_a_world_is_written_as_before() {
     assert!(task.situation().unwrap().is_none());
 }
 
+/// Every case is what a task has more, the path of its fault, and a part of what is
+/// said.
+fn check_faults(cases: &[(Value, &str, &str)]) {
+    for (more, path, part) in cases {
+        let error = Task::from_json(&room(more)).unwrap_err();
+        assert_eq!(error.path, *path, "{more}: {error}");
+        assert!(error.message.contains(part), "{more}: {error}");
+    }
+}
+
 #[test]
-fn faults_of_worlds_and_priors_are_named() {
+fn faults_of_worlds_are_named() {
     let grid = |map: &str| json!({"world": {"kind": "grid", "map": map, "steps": 5}});
-    let example = |word: &[&str], label: bool| json!({"word": word, "label": label});
-    let cases = [
+    check_faults(&[
         (grid("..a\n..b"), "world.map", "no start"),
         (grid("S.a\n.qb"), "world.map[1][1]", "`q`"),
         (
@@ -189,6 +198,23 @@ fn faults_of_worlds_and_priors_are_named() {
             "colours.b",
             "no colour",
         ),
+        (
+            json!({"symbols": [{"name": "apple", "letter": "b"}, {"name": "b"}]}),
+            "symbols[1]",
+            "stands for two things",
+        ),
+        (
+            json!({"symbols": [{"name": "apple", "letter": "ab"}, "b"]}),
+            "symbols[0].letter",
+            "one character",
+        ),
+    ]);
+}
+
+#[test]
+fn faults_of_priors_and_examples_are_named() {
+    let example = |word: &[&str], label: bool| json!({"word": word, "label": label});
+    check_faults(&[
         (
             json!({"prior": {"holds": ["avoid c"]}}),
             "prior.holds[0]",
@@ -240,22 +266,7 @@ fn faults_of_worlds_and_priors_are_named() {
             "greater than 0",
         ),
         (json!({"strategy": "psychic"}), "strategy", "unknown"),
-        (
-            json!({"symbols": [{"name": "apple", "letter": "b"}, {"name": "b"}]}),
-            "symbols[1]",
-            "stands for two things",
-        ),
-        (
-            json!({"symbols": [{"name": "apple", "letter": "ab"}, "b"]}),
-            "symbols[0].letter",
-            "one character",
-        ),
-    ];
-    for (more, path, part) in cases {
-        let error = Task::from_json(&room(&more)).unwrap_err();
-        assert_eq!(error.path, path, "{more}: {error}");
-        assert!(error.message.contains(part), "{more}: {error}");
-    }
+    ]);
 }
 
 #[test]
