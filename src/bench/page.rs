@@ -91,7 +91,7 @@ fn interval(ratio: super::Ratio) -> String {
 fn against(results: &Results, base: &str) -> String {
     let drawn = results.plan.experiment.drawn().is_some();
     let mut section = format!(
-        "\n## Costs over those of `{}`\n\nGeometric means over the targets of the ratio of mean costs; in brackets the 95 % interval of a bootstrap that draws {} anew. `–`: comparisons are never asked.\n",
+        "\n## Costs over those of `{}`\n\nGeometric means over the targets on which both were run of the ratio of mean costs; in brackets the 95 % interval of a bootstrap that draws {} anew. `–`: comparisons are never asked.\n",
         name(base),
         if drawn { "targets and runs" } else { "runs" }
     );
@@ -189,6 +189,9 @@ fn questions(results: &Results) -> String {
         for &cost in &results.plan.costs {
             for key in results.columns() {
                 let cell = results.cell(&group, key, cost, 0);
+                if cell.is_empty() {
+                    continue;
+                }
                 rows.push(vec![
                     group.name.clone(),
                     cost_name(cost),

@@ -91,7 +91,8 @@ impl Results {
     }
 
     /// What a contender pays at a cost, in right answers, against what another
-    /// does; none if one of them has no runs, or the other never pays.
+    /// does, on the targets on which both have runs; none if there are none, or the
+    /// other never pays.
     pub fn ratio(
         &self,
         contender: &str,
@@ -111,6 +112,7 @@ impl Results {
                 let costs = |cell: &Cell<'_>| cell.values(measure);
                 costs(&ours).into_iter().zip(costs(&theirs)).collect()
             })
+            .filter(|pairs: &Pairs| !pairs.is_empty())
             .collect();
         let uncertainty = match self.plan.experiment.drawn() {
             Some(_) => Uncertainty::TargetsAndRuns,

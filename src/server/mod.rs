@@ -11,6 +11,7 @@ mod export;
 mod forms;
 mod guard;
 mod pages;
+mod scene;
 mod start;
 mod teaching;
 mod views;

@@ -140,9 +140,9 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 return PageError(WebError::Slow).into_response();
             };
             let (first, second) = match &asked.question {
-                Question::Membership { atom } => (WordView::of(atom, task), None),
+                Question::Membership { atom } => (WordView::of(atom, session), None),
                 Question::Comparison { first, second } => {
-                    let (first, second) = WordView::pair(first, second, task);
+                    let (first, second) = WordView::pair(first, second, session);
                     (first, Some(second))
                 }
                 Question::Equivalence { hypothesis } => {
@@ -344,7 +344,7 @@ async fn history(
         let known = task.examples.iter().filter_map(|example| {
             let word = session.alphabet().word(&example.word).ok()?;
             Some(ExampleView {
-                word: WordView::of(&word, task),
+                word: WordView::of(&word, session),
                 label: example.label,
             })
         });

@@ -9,9 +9,11 @@ use serde_json::json;
 
 use super::assets;
 use super::error::WebError;
+use super::scene::{Look, Scene};
 use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
 use crate::session::{Session, Task};
+use crate::world::{Trajectory, World};
 
 /// What every page has around its content.
 pub(crate) struct Shell {
@@ -69,15 +71,35 @@ impl Bar {
 pub(crate) struct Chip {
     pub(crate) name: String,
     pub(crate) text: String,
+    /// What its tile shows.
+    pub(crate) letter: String,
     pub(crate) tone: usize,
+    /// A colour of the task's own, in place of the tone.
+    pub(crate) colour: Option<String>,
     /// Part of the beginning that both words share.
     pub(crate) shared: bool,
     /// Where the two words part.
     pub(crate) parts: bool,
 }
 
-/// A word as a row of chips.
+impl Chip {
+    /// Whether its tile says all.
+    pub(crate) fn is_bare(&self) -> bool {
+        self.text == self.letter
+    }
+
+    fn look(&self) -> Look {
+        Look {
+            letter: self.letter.clone(),
+            tone: self.tone,
+            colour: self.colour.clone(),
+        }
+    }
+}
+
+/// A word as a row of chips, and the walk that shows it where there is a grid.
 pub(crate) struct WordView {
+    pub(crate) scene: Option<Scene>,
     pub(crate) data: String,
     pub(crate) chips: Vec<Chip>,
     pub(crate) empty: String,
@@ -95,6 +117,8 @@ pub(crate) fn chips(task: &Task) -> Vec<Chip> {
         .map(|(i, symbol)| Chip {
             name: symbol.name.clone(),
             text: symbol.text().to_owned(),
+            letter: (symbol.letter).map_or(symbol.name.clone(), String::from),
+            colour: symbol.colour.as_ref().map(|colour| colour.hex().to_owned()),
             // The tones begin with the ones for danger and reward; bare letters
             // begin further on, so that they do not look like either.
             tone: (if worded { i } else { i + 2 }) % TONES,
@@ -105,19 +129,26 @@ pub(crate) fn chips(task: &Task) -> Vec<Chip> {
 }
 
 impl WordView {
-    pub(crate) fn of(word: &Word, task: &Task) -> Self {
-        Self::beside(word, None, task)
+    pub(crate) fn of(word: &Word, session: &Session) -> Self {
+        Self::beside(word, None, session)
     }
 
     /// The word with what it shares with `other` marked.
-    pub(crate) fn beside(word: &Word, other: Option<&Word>, task: &Task) -> Self {
+    pub(crate) fn beside(word: &Word, other: Option<&Word>, session: &Session) -> Self {
         let common = other.map_or(0, |other| {
             word.iter()
                 .zip(other.iter())
                 .take_while(|(a, b)| a == b)
                 .count()
         });
-        let symbols = chips(task);
+        let symbols = chips(session.task());
+        let scene = match session.world().map(|world| (world, world.trajectory(word))) {
+            Some((World::Grid(grid), Some(Trajectory::Walk { from, steps }))) => {
+                let looks: Vec<Look> = symbols.iter().map(Chip::look).collect();
+                Some(Scene::of(grid, from, &steps, &looks))
+            }
+            _ => None,
+        };
         let chips: Vec<Chip> = word
             .iter()
             .enumerate()
@@ -126,7 +157,9 @@ impl WordView {
                 Chip {
                     name: chip.name.clone(),
                     text: chip.text.clone(),
+                    letter: chip.letter.clone(),
                     tone: chip.tone,
+                    colour: chip.colour.clone(),
                     shared: i < common,
                     parts: common > 0 && i == common,
                 }
@@ -135,15 +168,16 @@ impl WordView {
         let names: Vec<&str> = chips.iter().map(|chip| chip.name.as_str()).collect();
         Self {
             data: names.join(" "),
+            scene,
             chips,
-            empty: task.empty.clone(),
+            empty: session.task().empty.clone(),
         }
     }
 
-    pub(crate) fn pair(first: &Word, second: &Word, task: &Task) -> (Self, Self) {
+    pub(crate) fn pair(first: &Word, second: &Word, session: &Session) -> (Self, Self) {
         (
-            Self::beside(first, Some(second), task),
-            Self::beside(second, Some(first), task),
+            Self::beside(first, Some(second), session),
+            Self::beside(second, Some(first), session),
         )
     }
 }
@@ -236,24 +270,23 @@ const COMPARISONS: [(&str, &str, Reply<Word>); 4] = [
 impl PastView {
     /// The standing answer of this number.
     pub(crate) fn of(number: u32, session: &Session) -> Option<Self> {
-        let task = session.task();
         let standing = session.answer_to(number)?;
         let reply = &standing.reply;
         let (asked, first, second, choices): (_, _, _, &[_]) =
             match &session.asked(number)?.question {
                 Question::Membership { atom } => (
                     "Is this acceptable?",
-                    Some(WordView::of(atom, task)),
+                    Some(WordView::of(atom, session)),
                     None,
                     &JUDGEMENTS,
                 ),
                 Question::Comparison { first, second } => {
-                    let (first, second) = WordView::pair(first, second, task);
+                    let (first, second) = WordView::pair(first, second, session);
                     ("Which is closer?", Some(first), Some(second), &COMPARISONS)
                 }
                 Question::Equivalence { .. } => {
                     let word = match reply {
-                        Reply::Counterexample { atom, .. } => Some(WordView::of(atom, task)),
+                        Reply::Counterexample { atom, .. } => Some(WordView::of(atom, session)),
                         _ => None,
                     };
                     ("Is this the rule?", word, None, &[])
@@ -273,7 +306,7 @@ impl PastView {
             number,
             asked,
             shows_word: first.is_some(),
-            first: first.unwrap_or_else(|| WordView::of(&Word::empty(), task)),
+            first: first.unwrap_or_else(|| WordView::of(&Word::empty(), session)),
             second,
             said: said.to_owned(),
             others: choices

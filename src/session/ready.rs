@@ -1,12 +1,30 @@
 //! The tasks that come with memrep: what the person should have in mind, the
 //! symbols, and what is known at the start; never the target itself.
 
+use std::path::Path;
+
 use crate::task::{
-    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task,
+    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task, TaskFile,
 };
 
 /// The names under which [`ready`] finds a task, for people.
-pub const NAMES: &str = "robot, tomita:1 to tomita:7, modulo:K, zeros:N";
+pub const NAMES: &str = "robot-recharge, patrol, deliver, repairs, four-buttons, car, robot, tomita:1 to tomita:7, modulo:K, zeros:N";
+
+/// Those that are task files, in the order in which they are offered.
+const FILES: [(&str, &str); 6] = [
+    (
+        "robot-recharge",
+        include_str!("../../examples/tasks/robot-recharge.toml"),
+    ),
+    ("patrol", include_str!("../../examples/tasks/patrol.toml")),
+    ("deliver", include_str!("../../examples/tasks/deliver.toml")),
+    ("repairs", include_str!("../../examples/tasks/repairs.toml")),
+    (
+        "four-buttons",
+        include_str!("../../examples/tasks/four-buttons.toml"),
+    ),
+    ("car", include_str!("../../examples/tasks/car.toml")),
+];
 
 const TOMITA: [(&str, &str); 7] = [
     (
@@ -41,8 +59,7 @@ const TOMITA: [(&str, &str); 7] = [
 
 const COMPARING: &str = "Of two sequences, an acceptable one is better than one that is not; two of the same kind are equally good or bad.";
 
-/// The ready task of this name: `robot`, `tomita:1` to `tomita:7`, `modulo:K`,
-/// `zeros:N`.
+/// The ready task of this name, one of [`NAMES`].
 ///
 /// # Errors
 ///
@@ -65,6 +82,13 @@ pub fn ready(name: &str) -> Result<Task, Malformed> {
                 )
             })
     };
+    if let Some((_, text)) = FILES.iter().find(|(file, _)| *file == name) {
+        let read = TaskFile::from_toml(text, Path::new(""));
+        return read.map(|file| file.task).map_err(|faults| {
+            let fault = faults.first().map_or("", |fault| &fault.message);
+            Malformed::new("", format!("`{name}`: {fault}"))
+        });
+    }
     match family {
         "robot" if number.is_none() => Ok(robot()),
         "tomita" => Ok(tomita(within(1, 7)?)),
@@ -79,7 +103,9 @@ pub fn ready(name: &str) -> Result<Task, Malformed> {
 
 /// The tasks offered on the start page, by name.
 pub fn offered() -> impl Iterator<Item = Task> {
-    let names = std::iter::once("robot".to_owned())
+    let files = FILES.iter().map(|(name, _)| (*name).to_owned());
+    let names = files
+        .chain(std::iter::once("robot".to_owned()))
         .chain((1..=7).map(|n| format!("tomita:{n}")))
         .chain(["modulo:3".to_owned(), "zeros:3".to_owned()]);
     names.filter_map(|name| ready(&name).ok())
@@ -196,7 +222,7 @@ mod tests {
             assert_eq!(task, again);
             assert!(!task.guidelines.is_empty());
         }
-        assert_eq!(offered().count(), 10);
+        assert_eq!(offered().count(), 16);
     }
 
     #[test]

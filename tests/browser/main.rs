@@ -11,6 +11,7 @@ mod house;
 mod page;
 mod pictures;
 mod teaching;
+mod walks;
 
 use driver::{Browser, Wishes, with};
 use fantoccini::Locator;
