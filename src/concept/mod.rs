@@ -3,8 +3,10 @@
 //! A class knows which of its concepts are consistent, smallest first, and on
 //! which atoms two of them differ. It must not know bandits, costs or people.
 
+mod blame;
 mod dfa;
 mod finite;
+mod monotone;
 mod preorder;
 mod prior;
 mod situated;
@@ -22,6 +24,10 @@ use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
+pub use monotone::{
+    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MonotoneClass, Place,
+    Point,
+};
 pub use preorder::Preorder;
 pub use prior::{Applied, Prior, PriorError};
 pub use situated::Situated;
