@@ -4,17 +4,19 @@
 //! know learners.
 
 mod counterexample;
+mod classed;
 mod drawn;
 mod order;
 mod scripted;
 mod situated;
 mod target;
 
+pub use classed::ClassGoal;
 pub use counterexample::Counterexamples;
 pub use drawn::Shape;
 pub(crate) use drawn::minimal;
 pub use order::{Order, PreferenceOrder};
-pub use scripted::{ScriptedTeacher, TeacherSettings};
+pub use scripted::{Goal, Language, ScriptedTeacher, TeacherSettings};
 pub use situated::SituatedTeacher;
 pub use target::{Target, TargetError};
 
