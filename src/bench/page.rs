@@ -89,7 +89,7 @@ fn interval(ratio: super::Ratio) -> String {
 
 /// How everybody stands against one, by both costs.
 fn against(results: &Results, base: &str) -> String {
-    let drawn = results.plan.experiment.drawn().is_some();
+    let drawn = results.plan.experiment.is_drawn();
     let mut section = format!(
         "\n## Costs over those of `{}`\n\nGeometric means over the targets of the ratio of mean costs; in brackets the 95 % interval of a bootstrap that draws {} anew. `–`: comparisons are never asked.\n",
         name(base),

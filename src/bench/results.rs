@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use super::contender::{BASE, RIVALS};
-use super::experiment::Plan;
+use super::experiment::{Experiment, Plan};
 use super::run::Run;
+use super::subject::Subject;
 use super::summary::{self, Pairs, Ratio, Spread, Uncertainty};
 
 /// A plan and all its runs.
@@ -40,20 +41,26 @@ impl Results {
     /// Every target for itself; those that were drawn by their number of states.
     pub fn groups(&self) -> Vec<Group> {
         let targets = &self.plan.targets;
-        if self.plan.experiment.drawn().is_none() {
-            let group = |(place, target): (usize, &crate::oracle::Target)| Group {
+        if self.plan.experiment == Experiment::Monotone {
+            return vec![Group {
+                name: format!("all {} concepts", targets.len()),
+                ..self.everything()
+            }];
+        }
+        if !self.plan.experiment.is_drawn() {
+            let group = |(place, target): (usize, &Subject)| Group {
                 name: target.name().to_owned(),
                 targets: vec![place],
             };
             return targets.iter().enumerate().map(group).collect();
         }
-        let mut sizes: Vec<usize> = targets.iter().map(|target| target.dfa().size()).collect();
+        let mut sizes: Vec<usize> = targets.iter().map(Subject::size).collect();
         sizes.sort_unstable();
         sizes.dedup();
         let group = |size| Group {
             name: format!("{size} states"),
             targets: (0..targets.len())
-                .filter(|&place| targets[place].dfa().size() == size)
+                .filter(|&place| targets[place].size() == size)
                 .collect(),
         };
         sizes.into_iter().map(group).collect()
@@ -108,9 +115,10 @@ impl Results {
                 costs(&ours).into_iter().zip(costs(&theirs)).collect()
             })
             .collect();
-        let uncertainty = match self.plan.experiment.drawn() {
-            Some(_) => Uncertainty::TargetsAndRuns,
-            None => Uncertainty::Runs,
+        let uncertainty = if self.plan.experiment.is_drawn() {
+            Uncertainty::TargetsAndRuns
+        } else {
+            Uncertainty::Runs
         };
         summary::ratio(&targets, uncertainty)
     }

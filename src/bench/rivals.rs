@@ -12,6 +12,7 @@ use serde_json::json;
 use super::contender::RIVALS;
 use super::experiment::Plan;
 use super::run::Run;
+use super::subject::Subject;
 use crate::evidence::Fact;
 use crate::learner::Counts;
 use crate::oracle::{Counterexamples, Target};
@@ -57,7 +58,7 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
             Counterexamples::Random => "random",
         },
         "seeds": plan.seeds().collect::<Vec<_>>(),
-        "targets": plan.targets.iter().map(table).collect::<Vec<_>>(),
+        "targets": plan.targets.iter().filter_map(Subject::language).map(table).collect::<Vec<_>>(),
     });
     let mut child = Command::new(python)
         .args(["-c", SCRIPT])

@@ -10,11 +10,13 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use super::clock::thread_cpu;
 use super::contender::Contender;
 use super::experiment::Plan;
+use super::subject::Subject;
 use super::trial::{TrialError, teach};
-use crate::concept::DfaClass;
+use crate::concept::{ConceptClass, DfaClass};
+use crate::evidence::Fact;
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Counts, EQUIVALENCE_COST, Learner};
-use crate::oracle::{ScriptedTeacher, TeacherSettings};
+use crate::oracle::{ScriptedTeacher, Teacher, TeacherSettings};
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -147,22 +149,50 @@ pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError
 }
 
 fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
-    let target = &plan.targets[job.target];
-    let noisy = plan.errors.iter().any(|&errors| errors > 0);
-    let settings = Settings {
-        engine: EngineChoice::Auto,
-        max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
-    };
-    let class = DfaClass::new(target.dfa().alphabet().clone(), settings);
-    let config = job.contender.config(job.cost, job.seed);
-    let mut learner = Learner::new(class, config, target.known().to_vec());
     let settings = TeacherSettings {
         order: plan.order,
         counterexamples: plan.counterexamples,
         error_rate: f64::from(job.errors) / 100.0,
         seed: job.seed,
     };
-    let mut teacher = ScriptedTeacher::new(target, settings);
+    match &plan.targets[job.target] {
+        Subject::Language(target) => {
+            let noisy = plan.errors.iter().any(|&errors| errors > 0);
+            let bounds = Settings {
+                engine: EngineChoice::Auto,
+                max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
+            };
+            let class = DfaClass::new(target.dfa().alphabet().clone(), bounds);
+            let teacher = ScriptedTeacher::new(target, settings);
+            let known = target.known().to_vec();
+            converse(plan, job, class, known, teacher, |learned| {
+                learned.is_equivalent(target.dfa()) == Ok(true)
+            })
+        }
+        Subject::Monotone(target) => {
+            let teacher = target.teacher(settings);
+            converse(plan, job, target.class(), Vec::new(), teacher, |learned| {
+                learned == target.parameter()
+            })
+        }
+    }
+}
+
+/// Lets the teacher teach a learner of the class.
+fn converse<C, T>(
+    plan: &Plan,
+    job: &Job,
+    class: C,
+    known: Vec<Fact<C::Atom>>,
+    mut teacher: T,
+    is_right: impl Fn(&C::Concept) -> bool,
+) -> Result<Run, RunError>
+where
+    C: ConceptClass,
+    T: Teacher<Atom = C::Atom, Concept = C::Concept>,
+{
+    let config = job.contender.config(job.cost, job.seed);
+    let mut learner = Learner::new(class, config, known);
     let report = teach(
         &mut learner,
         &mut teacher,
@@ -171,21 +201,18 @@ fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
         |_| {},
     )
     .map_err(|source| RunError {
-        target: target.name().to_owned(),
+        target: plan.targets[job.target].name().to_owned(),
         contender: job.contender.key,
         seed: job.seed,
         source,
     })?;
-    let equivalent = report
-        .learned
-        .is_some_and(|learned| learned.is_equivalent(target.dfa()) == Ok(true));
     Ok(Run {
         target: job.target,
         contender: job.contender.key,
         cost: job.cost,
         errors: job.errors,
         seed: job.seed,
-        equivalent,
+        equivalent: report.learned.as_ref().is_some_and(is_right),
         counts: report.counts,
         dropped: report.dropped,
         hurried: report.hurried,

@@ -6,6 +6,7 @@
 mod counterexample;
 mod classed;
 mod drawn;
+mod monotone;
 mod order;
 mod scripted;
 mod situated;
@@ -15,6 +16,7 @@ pub use classed::ClassGoal;
 pub use counterexample::Counterexamples;
 pub use drawn::Shape;
 pub(crate) use drawn::minimal;
+pub use monotone::{MonotoneError, MonotoneTarget};
 pub use order::{Order, PreferenceOrder};
 pub use scripted::{Goal, Language, ScriptedTeacher, TeacherSettings};
 pub use situated::SituatedTeacher;
