@@ -10,6 +10,7 @@ mod monotone;
 mod preorder;
 mod prior;
 mod situated;
+mod table;
 mod template;
 
 use std::fmt::Debug;
@@ -31,6 +32,7 @@ pub use monotone::{
 pub use preorder::Preorder;
 pub use prior::{Applied, Prior, PriorError};
 pub use situated::Situated;
+pub use table::{FiniteTable, TableError};
 pub use template::{Template, TemplateError};
 
 /// The atoms that are drawn from where a class knows no better distribution.
