@@ -2,35 +2,36 @@
 //! took.
 
 mod check;
+mod classes;
+mod converse;
 mod doubts;
 mod situation;
 mod summary;
+mod teller;
 mod trace;
 mod values;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
 
 use anyhow::Context as _;
 use automata::format::json::{Document, Provenance};
-use automata::{Alphabet, Dfa, Word};
-use indicatif::ProgressBar;
+use automata::Dfa;
 
+use self::converse::converse;
 use self::situation::Situation;
+use self::teller::Words;
 use self::values::Promise;
 use super::files::{self, Content, Format};
-use super::output::{Output, counted};
-use crate::bench::{Report, process_cpu, teach};
-use crate::concept::{ConceptClass, DfaClass, Situated};
+use super::output::Output;
+use crate::bench::Report;
+use crate::concept::{DfaClass, Situated};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
-    Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, Teacher,
-    TeacherSettings,
+    Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, TeacherSettings,
 };
-use crate::world::World;
 use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
@@ -46,6 +47,8 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target robot --prior 'avoid R' --prior 'reach Y'
   memrep learn --target robot --prior ry.json --grid room.txt --steps 30
   memrep learn --target task.json --pool recordings.jsonl --no-empty-word
+  memrep learn --target monotone:2:10 --trace
+  memrep learn --target finite:manners.csv#polite --strategy thesis
   memrep learn --target tomita:5 --comparison-cost inf --format json
     {\"target\":\"tomita:5\",\"strategy\":\"bayes\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
 
@@ -54,6 +57,19 @@ third in the dissertation's three-state form), zeros:N (no run of more than N
 zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
 of the dissertation), random:N and task:N (drawn at random, as in `memrep bench
 random` and `tasks`), or the path of an automaton file (json or dot).
+
+Targets of other classes, about whose options on words nothing can be said:
+monotone:D:TICKS (behaviours are points with coordinates from 0 to 1, acceptable
+if at most the target in each of D = 1 to 4 dimensions; the target is drawn by the
+seed from the grid with TICKS points per axis, or as number N: monotone:D:TICKS:N),
+finite:FILE (a table of comma-separated values: a line with the names of concepts,
+perhaps a line `size`, and a line a behaviour with 1 under the concepts that
+contain it and else 0; the target is drawn by the seed, or named: finite:FILE#NAME),
+linear:FILE (JSON with `weights`, `threshold` and `behaviours`, each a `name` and
+`features`, a list of numbers from 0 to 1 for every step: acceptable is what is
+above the threshold in sum; rewards are looked for on grids with up to `finest`
+points per axis). See examples/manners.csv and examples/drives.json. For these,
+`size` stands in place of `states`, and --trace has `atom` in place of `word`.
 
 With --conformance, what the teacher agreed with is believed only after random
 words were judged: the line `checked` says how far one may trust it. Of a teacher that
@@ -151,8 +167,8 @@ pub(crate) struct Args {
     /// Print every question with its answer.
     #[arg(long)]
     trace: bool,
-    /// Write the learned automaton, with what is known beforehand, to this file
-    /// (`-`: the standard output).
+    /// Write the learned automaton, with what is known beforehand, or the learned
+    /// concept of another class as JSON, to this file (`-`: the standard output).
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
     /// Write only the part that was learned beside what is known beforehand.
@@ -178,6 +194,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
         );
     }
+    if let Some(status) = classes::run(args)? {
+        return Ok(status);
+    }
     let target = target(args)?;
     let alphabet = target.dfa().alphabet().clone();
     let usual_bound = if args.error_rate > 0.0 && !args.robust {
@@ -189,24 +208,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         engine: EngineChoice::Auto,
         max_states: usize::from(args.max_states.unwrap_or(usual_bound)),
     };
-    let config = Config {
-        strategy: args.strategy,
-        membership_cost: args.membership_cost,
-        comparison_cost: args.comparison_cost,
-        equivalence_cost: (args.equivalence_cost)
-            .unwrap_or(EQUIVALENCE_COST * args.membership_cost),
-        shortest_counterexamples: args.promise.is_some(),
-        robust: args.robust,
-        conformance: args.conformance,
-        seed: args.seed,
-        budget: BUDGET,
-    };
-    let teacher = TeacherSettings {
-        order: args.teacher,
-        counterexamples: args.counterexample,
-        error_rate: args.error_rate,
-        seed: args.seed,
-    };
+    let (config, teacher) = (config(args), teacher(args));
     let known = target.known().to_vec();
     let mut beyond = None;
     let (report, doubts) = match situation::read(args, &alphabet)? {
@@ -214,7 +216,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             let class = DfaClass::new(alphabet.clone(), settings);
             let mut learner = Learner::new(class, config, known);
             let mut teacher = ScriptedTeacher::new(&target, teacher);
-            let report = converse(args, &mut learner, &mut teacher, &alphabet, None)?;
+            let words = Words {
+                alphabet: alphabet.clone(),
+                world: None,
+            };
+            let report = converse(args, &mut learner, &mut teacher, &words)?;
             (report, learner.doubts().cloned())
         }
         Some(Situation { world, prior }) => {
@@ -225,7 +231,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             )?;
             let mut learner = Learner::new(class, config, known);
             let mut teacher = SituatedTeacher::new(Arc::clone(&world), open, &target, teacher);
-            let mut report = converse(args, &mut learner, &mut teacher, &alphabet, Some(&world))?;
+            let words = Words {
+                alphabet: alphabet.clone(),
+                world: Some(&world),
+            };
+            let mut report = converse(args, &mut learner, &mut teacher, &words)?;
             beyond = (report.learned.as_ref()).and_then(|part| learner.class().beyond(part));
             if let (Some(path), Some(part)) = (&args.save_part, &report.learned) {
                 save(path, "--save-part", &target, args.seed, part)?;
@@ -237,61 +247,56 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, "--save", &target, args.seed, learned)?;
     }
-    summary::tell(args, &target, &report, doubts.as_ref(), beyond.as_ref())?;
+    let words = Words {
+        alphabet,
+        world: None,
+    };
+    let name = target.name();
+    summary::tell(
+        args,
+        name,
+        &words,
+        &report,
+        doubts.as_ref(),
+        beyond.as_ref(),
+    )?;
+    Ok(status(&report))
+}
+
+/// What the learner is told.
+fn config(args: &Args) -> Config {
+    Config {
+        strategy: args.strategy,
+        membership_cost: args.membership_cost,
+        comparison_cost: args.comparison_cost,
+        equivalence_cost: (args.equivalence_cost)
+            .unwrap_or(EQUIVALENCE_COST * args.membership_cost),
+        shortest_counterexamples: args.promise.is_some(),
+        robust: args.robust,
+        conformance: args.conformance,
+        seed: args.seed,
+        budget: BUDGET,
+    }
+}
+
+/// How the teacher answers.
+fn teacher(args: &Args) -> TeacherSettings {
+    TeacherSettings {
+        order: args.teacher,
+        counterexamples: args.counterexample,
+        error_rate: args.error_rate,
+        seed: args.seed,
+    }
+}
+
+/// Whether the target was learned, and borne out where that was asked for.
+fn status<C>(report: &Report<C>) -> ExitCode {
     let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
-    Ok(if report.learned.is_some() && borne_out {
+    if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(1)
-    })
-}
-
-/// Lets the teacher teach the learner, and tells of it what is asked to be told.
-fn converse<C, T>(
-    args: &Args,
-    learner: &mut Learner<C>,
-    teacher: &mut T,
-    alphabet: &Alphabet,
-    world: Option<&World>,
-) -> anyhow::Result<Report<Dfa>>
-where
-    C: ConceptClass<Concept = Dfa, Atom = Word>,
-    T: Teacher<Concept = Dfa, Atom = Word>,
-{
-    // Drawn only on a terminal, and only where the trace does not tell anyway.
-    let progress = if args.trace {
-        ProgressBar::hidden()
-    } else {
-        ProgressBar::new_spinner()
-    };
-    progress.enable_steady_tick(Duration::from_millis(200));
-    let mut printed = Ok(());
-    // The check and the batch of the last claim told.
-    let mut told = (0, 0);
-    let report = teach(learner, teacher, args.max_questions, process_cpu, |asked| {
-        let questions = |number| counted(number, "question", "questions");
-        progress.set_message(match asked.check {
-            None => format!("{} asked", questions(asked.number)),
-            Some(check) => format!(
-                "{} asked; {} of {} random words judged",
-                questions(asked.number),
-                check.judged,
-                check.needed
-            ),
-        });
-        if args.trace && printed.is_ok() {
-            printed = check::batch(args.format, asked, &mut told)
-                .and_then(|()| trace::line(args.format, alphabet, world, asked));
-        }
-    });
-    progress.finish_and_clear();
-    printed?;
-    let report = report?;
-    if args.trace {
-        let mut conflicts = report.conflicts.iter();
-        conflicts.try_for_each(|dropped| trace::conflict(args.format, dropped))?;
     }
-    Ok(report)
 }
 
 /// The target of this name, or else of this file.
