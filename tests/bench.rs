@@ -17,7 +17,7 @@ fn plan(targets: &[&str]) -> Plan {
         experiment: Experiment::Tomita,
         targets: targets
             .iter()
-            .map(|name| Target::named(name).unwrap())
+            .map(|name| Target::named(name).unwrap().into())
             .collect(),
         contenders: ["bayes", "thesis"]
             .map(|key| Contender::of(key).unwrap())

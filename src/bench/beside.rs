@@ -109,7 +109,8 @@ fn exchange(results: &Results) -> String {
             };
             let step = |&(low, high): &(u32, u32)| {
                 between(contender, low, high).map_or(String::new(), |(saved, added)| {
-                    format!("{:+.2} / {added:+.2}", -saved)
+                    // No change is neither more nor less.
+                    format!("{:+.2} / {:+.2}", 0.0 - saved, 0.0 + added)
                 })
             };
             let name = name(contender.key).to_owned();

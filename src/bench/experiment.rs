@@ -172,10 +172,9 @@ impl Experiment {
     /// The runs of a cell where nothing else is asked for.
     pub fn trials(self, quick: bool) -> u64 {
         match (self, quick) {
-            (Self::Random | Self::Tasks | Self::Noise | Self::Monotone, true)
-            | (Self::Monotone, false) => 1,
+            (Self::Random | Self::Tasks | Self::Noise | Self::Monotone, true) => 1,
             (_, true) => 2,
-            (Self::Random | Self::Tasks, false) => 5,
+            (Self::Random | Self::Tasks | Self::Monotone, false) => 5,
             (_, false) => 20,
         }
     }

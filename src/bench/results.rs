@@ -102,20 +102,27 @@ impl Results {
         cost: Option<u32>,
         measure: Measure,
     ) -> Option<Ratio> {
-        let targets: Vec<Pairs> = (0..self.plan.targets.len())
-            .map(|target| {
-                let group = Group {
-                    name: String::new(),
-                    targets: vec![target],
-                };
-                let ours = self.cell(&group, contender, cost, 0);
-                let theirs = self.cell(&group, base, cost, 0);
+        let single = |target| Group {
+            name: String::new(),
+            targets: vec![target],
+        };
+        // Some concepts of a monotone family are learned by equivalence queries
+        // alone, and over nothing there is no ratio: all of them are one target.
+        let groups = match self.plan.experiment {
+            Experiment::Monotone => vec![self.everything()],
+            _ => (0..self.plan.targets.len()).map(single).collect(),
+        };
+        let targets: Vec<Pairs> = groups
+            .iter()
+            .map(|group| {
+                let ours = self.cell(group, contender, cost, 0);
+                let theirs = self.cell(group, base, cost, 0);
                 // The runs of a cell are in the order of their seeds.
                 let costs = |cell: &Cell<'_>| cell.values(measure);
                 costs(&ours).into_iter().zip(costs(&theirs)).collect()
             })
             .collect();
-        let uncertainty = if self.plan.experiment.is_drawn() {
+        let uncertainty = if groups.len() > 1 && self.plan.experiment.is_drawn() {
             Uncertainty::TargetsAndRuns
         } else {
             Uncertainty::Runs

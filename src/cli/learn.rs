@@ -16,8 +16,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use automata::format::json::{Document, Provenance};
 use automata::Dfa;
+use automata::format::json::{Document, Provenance};
 
 use self::converse::converse;
 use self::situation::Situation;

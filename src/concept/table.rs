@@ -84,7 +84,9 @@ impl FiniteTable {
             if fields.len() == header.len() {
                 return Ok(());
             }
-            let at = fields.get(header.len()).unwrap_or(&fields[fields.len() - 1]);
+            let at = fields
+                .get(header.len())
+                .unwrap_or(&fields[fields.len() - 1]);
             Err(at.error(format!(
                 "this line has {} fields and the first has {}: give one for every concept",
                 fields.len(),
@@ -97,7 +99,10 @@ impl FiniteTable {
             for (size, field) in sizes.iter_mut().zip(&fields[1..]) {
                 let read = field.text.parse().ok().filter(|size| *size > 0);
                 *size = read.ok_or_else(|| {
-                    field.error(format!("`{}` is no size: give a whole number from 1", field.text))
+                    field.error(format!(
+                        "`{}` is no size: give a whole number from 1",
+                        field.text
+                    ))
                 })?;
             }
         }
@@ -220,7 +225,10 @@ fn fields(number: usize, line: &str) -> Result<Vec<Field>, TableError> {
                 at += 1;
             }
             if characters.get(at).is_some_and(|c| *c != ',') {
-                return Err(error(at, "after a quoted field comes a comma: write a `\"` inside as `\"\"`"));
+                return Err(error(
+                    at,
+                    "after a quoted field comes a comma: write a `\"` inside as `\"\"`",
+                ));
             }
         } else {
             while characters.get(at).is_some_and(|c| *c != ',') {

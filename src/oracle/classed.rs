@@ -104,14 +104,15 @@ impl<C: ConceptClass> Goal for ClassGoal<C> {
         if simplest.is_empty() {
             return None;
         }
-        let differs = |atom: &C::Atom| {
-            self.contains(atom) != self.class.contains(hypothesis, atom)
-        };
+        let differs = |atom: &C::Atom| self.contains(atom) != self.class.contains(hypothesis, atom);
         let mut drawn = self.class.draw(hypothesis, DRAWN, random);
         drawn.extend(self.class.draw(&self.concept, DRAWN, random));
         drawn.retain(differs);
         // Two that differ little differ on few atoms.
-        drawn.choose(random).or_else(|| simplest.choose(random)).cloned()
+        drawn
+            .choose(random)
+            .or_else(|| simplest.choose(random))
+            .cloned()
     }
 }
 

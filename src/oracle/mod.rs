@@ -3,8 +3,8 @@
 //! A teacher knows its target and a preference order over atoms. It must not
 //! know learners.
 
-mod counterexample;
 mod classed;
+mod counterexample;
 mod drawn;
 mod monotone;
 mod order;

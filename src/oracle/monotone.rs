@@ -64,7 +64,9 @@ impl MonotoneTarget {
             let mut parts = parameters.split(':');
             let dimensions: usize = parts.next()?.parse().ok()?;
             let points: usize = parts.next()?.parse().ok()?;
-            let number = parts.next().map_or(Some(number), |part| part.parse().ok())?;
+            let number = parts
+                .next()
+                .map_or(Some(number), |part| part.parse().ok())?;
             let most = MOST.get(dimensions.checked_sub(1)?)?;
             let fits = (2..=*most).contains(&points) && parts.next().is_none();
             fits.then(|| Self::draw(dimensions, points, number))

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use memrep::bench::{process_cpu, teach};
 use memrep::belief::Heard;
+use memrep::bench::{process_cpu, teach};
 use memrep::concept::{
     Behaviour, Cause, ConceptClass, Corners, Failure, Family, LinearReward, LinearRewards,
     MonotoneClass, Point, Wish,
@@ -304,18 +304,32 @@ fn linear_rewards_are_a_monotone_family() {
         }
         assert!((theta[2] - (reward.threshold / bound + 1.0) / 2.0).abs() < 1e-12);
         let back = family.parameter(&reward).unwrap();
-        assert!(back.iter().zip(parameter.coordinates()).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!(
+            back.iter()
+                .zip(parameter.coordinates())
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        );
 
         let class = MonotoneClass::new(family.clone(), finest);
         let contained = |behaviour: &Behaviour| class.contains(&parameter, behaviour);
         for behaviour in family.behaviours() {
             let sum = |feature: usize| -> f64 {
-                behaviours[behaviour.0 as usize].iter().map(|step| step[feature]).sum()
+                behaviours[behaviour.0 as usize]
+                    .iter()
+                    .map(|step| step[feature])
+                    .sum()
             };
             let total = reward.weights[0] * sum(0) + reward.weights[1] * sum(1);
             if (total - reward.threshold).abs() > 1e-9 {
-                assert_eq!(contained(&behaviour), total > reward.threshold, "{reward:?}");
-                assert_eq!(family.accepts(&reward, behaviour), Ok(total > reward.threshold));
+                assert_eq!(
+                    contained(&behaviour),
+                    total > reward.threshold,
+                    "{reward:?}"
+                );
+                assert_eq!(
+                    family.accepts(&reward, behaviour),
+                    Ok(total > reward.threshold)
+                );
             }
         }
         concepts.push(family.behaviours().filter(contained).collect());
@@ -324,7 +338,11 @@ fn linear_rewards_are_a_monotone_family() {
     let grid: Vec<Point> = grid(3, finest).into_iter().collect();
     for (one, low) in grid.iter().zip(&concepts) {
         for (other, high) in grid.iter().zip(&concepts) {
-            if one.coordinates().zip(other.coordinates()).all(|(a, b)| a <= b) {
+            if one
+                .coordinates()
+                .zip(other.coordinates())
+                .all(|(a, b)| a <= b)
+            {
                 assert!(low.is_subset(high));
             }
         }
@@ -336,10 +354,21 @@ fn linear_rewards_are_a_monotone_family() {
         assert!(concepts.iter().any(|c| labelled(&c)) && !concepts.iter().all(|c| labelled(&c)));
     }
     let atom = Behaviour(3);
-    class.add(None, Fact::Label { atom, accepted: true });
+    class.add(
+        None,
+        Fact::Label {
+            atom,
+            accepted: true,
+        },
+    );
     let sample = class.sample(100, 0, &mut Budget::unlimited()).unwrap();
     let sets: BTreeSet<BTreeSet<Behaviour>> = (sample.concepts.iter())
-        .map(|c| family.behaviours().filter(|b| class.contains(c, b)).collect())
+        .map(|c| {
+            family
+                .behaviours()
+                .filter(|b| class.contains(c, b))
+                .collect()
+        })
         .collect();
     assert_eq!(sets.len(), sample.concepts.len());
     assert!(sample.complete);
@@ -353,24 +382,37 @@ fn linear_rewards_are_a_monotone_family() {
         let report = learn(&family, finest, &target, config(way, 0), settings);
         let learned = report.learned.unwrap();
         for behaviour in family.behaviours() {
-            assert_eq!(class.contains(&learned, &behaviour), class.contains(&target, &behaviour));
+            assert_eq!(
+                class.contains(&learned, &behaviour),
+                class.contains(&target, &behaviour)
+            );
         }
     }
 }
 
 #[test]
 fn bad_rewards_are_named() {
-    let message = |behaviours: &[Vec<Vec<f64>>]| LinearRewards::new(behaviours).unwrap_err().to_string();
+    let message =
+        |behaviours: &[Vec<Vec<f64>>]| LinearRewards::new(behaviours).unwrap_err().to_string();
     assert!(message(&[]).contains("no behaviour"));
     assert!(message(&[vec![]]).contains("no behaviour"));
     let uneven = message(&[vec![vec![0.0, 1.0]], vec![vec![0.5]]]);
-    assert!(uneven.contains("behaviour 2, step 1 has 1 features"), "{uneven}");
+    assert!(
+        uneven.contains("behaviour 2, step 1 has 1 features"),
+        "{uneven}"
+    );
     let high = message(&[vec![vec![0.0], vec![1.5]]]);
-    assert!(high.contains("behaviour 1, step 2, feature 1 is 1.5"), "{high}");
+    assert!(
+        high.contains("behaviour 1, step 2, feature 1 is 1.5"),
+        "{high}"
+    );
     let family = LinearRewards::new(&[vec![vec![0.5]]]).unwrap();
     let reward = |weights: &[f64], threshold| {
         let weights = weights.to_vec();
-        family.parameter(&LinearReward { weights, threshold }).unwrap_err().to_string()
+        family
+            .parameter(&LinearReward { weights, threshold })
+            .unwrap_err()
+            .to_string()
     };
     assert!(reward(&[0.1, 0.2], 0.0).contains("2 weights for 1 features"));
     assert!(reward(&[-1.5], 0.0).contains("weight 1 is -1.5"));
@@ -387,13 +429,37 @@ fn little_work_is_no_answer() {
         let better = Point::new(vec![5, 2, number, 12], 29);
         class.add(None, Fact::Below { worse, better });
     }
-    class.add(None, Fact::Label { atom: Point::new(vec![15, 1, 1, 1], 29), accepted: false });
-    class.add(None, Fact::Label { atom: Point::new(vec![14, 1, 1, 1], 29), accepted: true });
+    class.add(
+        None,
+        Fact::Label {
+            atom: Point::new(vec![15, 1, 1, 1], 29),
+            accepted: false,
+        },
+    );
+    class.add(
+        None,
+        Fact::Label {
+            atom: Point::new(vec![14, 1, 1, 1], 29),
+            accepted: true,
+        },
+    );
     assert!(matches!(
         class.sample(8, 0, &mut Budget::new(100)),
         Err(Failure::OverBudget { at_least: 2.. })
     ));
-    let wish = Wish { sizes: 3, decay: 0.5, listed: 50, heard: &[vec![Heard { fact: Fact::Label { atom: Point::new(vec![0; 4], 0), accepted: true }, sure: true }]], seed: 0 };
+    let wish = Wish {
+        sizes: 3,
+        decay: 0.5,
+        listed: 50,
+        heard: &[vec![Heard {
+            fact: Fact::Label {
+                atom: Point::new(vec![0; 4], 0),
+                accepted: true,
+            },
+            sure: true,
+        }]],
+        seed: 0,
+    };
     let spread = class.spread(&wish, &mut Budget::new(2_000_000)).unwrap();
     assert_eq!(spread.concepts.len(), 50);
     assert!(!spread.exact);

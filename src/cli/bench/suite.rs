@@ -27,8 +27,7 @@ same command gives the same bytes, but for the last section of NAME.md, on times
 Exit status: 0 if every run with right answers learned its target, 1 if one did
 not, 2 if the arguments are at fault or a file cannot be written.")]
 pub(super) struct Options {
-    /// The runs of a cell: 20, 5 for drawn automata and 1 for `monotone`, where
-    /// nothing is said.
+    /// The runs of a cell: 20, and 5 for drawn targets, where nothing is said.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     trials: Option<u64>,
     /// Few runs, so that it takes less than two minutes on two cores.

@@ -156,7 +156,10 @@ fn table(target: &str, seed: u64) -> anyhow::Result<(FiniteTable, FiniteConcept)
     let concept = match name {
         Some(name) => table.named(name).with_context(|| {
             let names: Vec<&str> = concepts.iter().map(|&c| table.concept(c)).collect();
-            format!("{path} has no concept `{name}`: give one of {}", names.join(", "))
+            format!(
+                "{path} has no concept `{name}`: give one of {}",
+                names.join(", ")
+            )
         })?,
         None => {
             let mut random = ChaCha8Rng::seed_from_u64(seed);

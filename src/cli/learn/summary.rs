@@ -105,10 +105,7 @@ pub(super) fn tell<L: Teller>(
         return output::line(serde_json::to_string(&summary)?);
     }
     match &report.learned {
-        Some(learned) => output::line(format!(
-            "learned: {target} {}",
-            teller.learned(learned)
-        ))?,
+        Some(learned) => output::line(format!("learned: {target} {}", teller.learned(learned)))?,
         None => output::line(format!(
             "not learned: {target} within {}; allow more by `--max-questions`",
             counted(args.max_questions, "question", "questions")

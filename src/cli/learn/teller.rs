@@ -4,9 +4,7 @@ use automata::{Alphabet, Dfa, Word};
 use serde::Serialize;
 
 use crate::cli::output::{self, Nouns, counted};
-use crate::concept::{
-    Behaviour, FiniteAtom, FiniteConcept, FiniteTable, LinearRewards, Point,
-};
+use crate::concept::{Behaviour, FiniteAtom, FiniteConcept, FiniteTable, LinearRewards, Point};
 use crate::world::{Trajectory, World};
 
 /// Tells of the atoms and concepts of one class.
@@ -194,7 +192,11 @@ impl Teller for FiniteTable {
     }
 
     fn learned(&self, concept: &FiniteConcept) -> String {
-        format!("as `{}` of size {}", self.concept(*concept), self.size(concept))
+        format!(
+            "as `{}` of size {}",
+            self.concept(*concept),
+            self.size(concept)
+        )
     }
 
     fn size(&self, concept: &FiniteConcept) -> usize {
@@ -255,7 +257,10 @@ impl Teller for Rewards {
 
     fn learned(&self, concept: &Point) -> String {
         let size = counted(concept.size(), "point", "points");
-        format!("as {}, on the grid with {size} per axis", self.described(concept))
+        format!(
+            "as {}, on the grid with {size} per axis",
+            self.described(concept)
+        )
     }
 
     fn size(&self, concept: &Point) -> usize {

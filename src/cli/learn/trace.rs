@@ -52,11 +52,7 @@ struct ConflictLine<'a> {
 }
 
 /// Prints answers that contradict each other.
-pub(super) fn conflict(
-    format: Output,
-    nouns: &Nouns,
-    conflict: &Dropped,
-) -> anyhow::Result<()> {
+pub(super) fn conflict(format: Output, nouns: &Nouns, conflict: &Dropped) -> anyhow::Result<()> {
     let Dropped {
         contradiction,
         answers,

@@ -65,7 +65,10 @@ impl Corners {
         });
         walk.filter(move |ticks| {
             let uses = ticks.iter().filter(|&&tick| tick > 0).count() == used;
-            uses && ticks.iter().fold(steps, |divisor, &tick| gcd(divisor, tick)) == 1
+            uses && ticks
+                .iter()
+                .fold(steps, |divisor, &tick| gcd(divisor, tick))
+                == 1
         })
         .map(move |ticks| Point::new(ticks, steps))
     }
@@ -132,9 +135,7 @@ impl Family for Corners {
         }
         // Several dimensions are used only where that is not enough.
         if found.len() < count {
-            let separates = |atom: &Point| {
-                self.contains(high, atom) && !self.contains(low, atom)
-            };
+            let separates = |atom: &Point| self.contains(high, atom) && !self.contains(low, atom);
             let further = self.points(2).take(WALKED).filter(separates);
             found.extend(further.take(count - found.len()));
         }

@@ -38,8 +38,7 @@ pub trait Family {
     fn atoms(&self) -> Box<dyn Iterator<Item = Self::Atom> + '_>;
 
     /// `count` independent draws from the atoms by which a hypothesis is checked.
-    fn draw(&self, hypothesis: &Point, count: usize, random: &mut ChaCha8Rng)
-    -> Vec<Self::Atom>;
+    fn draw(&self, hypothesis: &Point, count: usize, random: &mut ChaCha8Rng) -> Vec<Self::Atom>;
 
     /// The distribution of [`Self::draw`], as a phrase that can stand in
     /// brackets.

@@ -161,10 +161,17 @@ impl LinearRewards {
     /// # Errors
     ///
     /// If it has not one weight a feature, or a number out of its range.
-    pub fn accepts(&self, reward: &LinearReward, behaviour: Behaviour) -> Result<bool, LinearError> {
+    pub fn accepts(
+        &self,
+        reward: &LinearReward,
+        behaviour: Behaviour,
+    ) -> Result<bool, LinearError> {
         self.parameter(reward)?;
         let sum = self.sums[behaviour.0 as usize].iter();
-        let total: f64 = sum.zip(&reward.weights).map(|(sum, weight)| sum * weight).sum();
+        let total: f64 = sum
+            .zip(&reward.weights)
+            .map(|(sum, weight)| sum * weight)
+            .sum();
         Ok(total > reward.threshold)
     }
 
@@ -223,14 +230,20 @@ impl Family for LinearRewards {
         let scaled = |tick: &u32| 2.0 * f64::from(*tick) - steps;
         let (threshold, weights) = parameter.ticks.split_last().expect("d + 1 is at least 2");
         let sums = self.sums[atom.0 as usize].iter();
-        let total: f64 = sums.zip(weights).map(|(sum, tick)| sum * scaled(tick)).sum();
+        let total: f64 = sums
+            .zip(weights)
+            .map(|(sum, tick)| sum * scaled(tick))
+            .sum();
         total > -scaled(threshold) * self.bound()
     }
 
     fn slack(&self, parameter: &Point, atom: &Behaviour) -> f64 {
         let reward = self.reward(parameter);
         let sums = self.sums[atom.0 as usize].iter();
-        let total: f64 = sums.zip(&reward.weights).map(|(sum, weight)| sum * weight).sum();
+        let total: f64 = sums
+            .zip(&reward.weights)
+            .map(|(sum, weight)| sum * weight)
+            .sum();
         (total - reward.threshold) / (2.0 * self.bound())
     }
 

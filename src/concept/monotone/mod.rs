@@ -19,8 +19,8 @@ mod linear;
 mod point;
 mod search;
 
-use std::collections::btree_map::{BTreeMap, Entry};
 use std::collections::BTreeSet;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;

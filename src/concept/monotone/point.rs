@@ -29,7 +29,9 @@ impl Point {
             ticks.iter().all(|&tick| tick <= steps),
             "a coordinate of {ticks:?} over {steps} is above 1"
         );
-        let divisor = ticks.iter().fold(steps, |divisor, &tick| gcd(divisor, tick));
+        let divisor = ticks
+            .iter()
+            .fold(steps, |divisor, &tick| gcd(divisor, tick));
         if ticks.iter().all(|&tick| tick == 0) {
             return Self { ticks, steps: 0 };
         }

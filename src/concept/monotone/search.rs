@@ -23,7 +23,9 @@ struct Cell {
 impl Cell {
     fn volume(&self) -> u64 {
         let lengths = self.low.iter().zip(&self.high);
-        lengths.map(|(low, high)| u64::from(high - low) + 1).product()
+        lengths
+            .map(|(low, high)| u64::from(high - low) + 1)
+            .product()
     }
 
     /// The parameter of this number, below the volume.
