@@ -13,6 +13,7 @@
 //! - [`oracle`]: who can answer without a person.
 //! - [`learner`]: which question to ask next.
 //! - [`draw`]: pictures of automata.
+//! - [`task`]: what is taught, and the files that say so.
 //! - [`session`]: one teaching session, a fold over its log.
 //! - `store` and `server` (feature `server`): where logs last; pages and API.
 //! - [`mod@bench`]: scripted runs and the tables made of them.
@@ -32,4 +33,5 @@ pub mod server;
 pub mod session;
 #[cfg(feature = "server")]
 pub mod store;
+pub mod task;
 pub mod world;

@@ -1,5 +1,6 @@
 //! The experiments: which targets, which teacher, how many runs.
 
+use super::case::Case;
 use super::contender::{CONTENDERS, Contender};
 use super::subject::Subject;
 use crate::oracle::{Counterexamples, MonotoneTarget, Order, Shape, Target, TargetError};
@@ -82,7 +83,7 @@ impl Experiment {
                 "The targets are the words without a run of more than 1, 2, 3 and 4 zeros; that the empty word is accepted is known at the start."
             }
             Self::Robot => {
-                "The target is the task of Fig. 5.2: reach the recharge tile, never touch lava, and after water be dried first. The labels of eleven words are known at the start, and the rest of the prior knowledge is not used."
+                "The target is the task of Fig. 5.2: reach the recharge tile, never touch lava, and after water be dried first. The labels of eleven words are known at the start; in the second and third row also RY (`avoid R` and `reach Y`), so that BBY is learned, and in the third only what a walk of up to 40 steps through a room can show is asked about. That no question there is about a behaviour that is settled or cannot happen was checked in every run."
             }
             Self::Random => {
                 "The targets are minimal automata with 3 to 8 states over 2 to 4 letters, with edges and labels drawn evenly; nothing is known at the start. `memrep learn --target random:N` teaches the one of number N."
@@ -126,7 +127,10 @@ impl Experiment {
         let (family, numbers) = match self {
             Self::Modulo => ("modulo", &[5, 10, 20, 40][..]),
             Self::Zeros => ("zeros", &[1, 2, 3, 4][..]),
-            Self::Robot => return Ok(vec![Target::named("robot")?.into()]),
+            Self::Robot => {
+                let cases = Case::robot()?;
+                return Ok(cases.into_iter().map(Subject::from).collect());
+            }
             _ => ("tomita", &[1, 2, 3, 4, 5, 6, 7][..]),
         };
         numbers

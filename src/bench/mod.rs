@@ -5,6 +5,7 @@
 //! [`Results`] are told by a page, a table for programs and a figure.
 
 mod beside;
+mod case;
 mod chart;
 mod clock;
 mod contender;
@@ -25,6 +26,7 @@ mod table;
 mod times;
 mod trial;
 
+pub use case::{Case, Setting};
 pub use chart::ChartError;
 pub use clock::{process_cpu, thread_cpu};
 pub use contender::{BASE, CONTENDERS, Contender, KV, RIVALS, Rival};

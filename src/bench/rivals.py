@@ -3,13 +3,16 @@
 Reads one JSON object from the standard input:
     {"counterexamples": "shortest" or "random", "seeds": [0, ...], "targets": [
       {"symbols": 2, "start": 0, "accepting": [0], "delta": [[0, 1], ...],
-       "known": [[], [0, 1], ...]}, ...]}
+       "known": [[], [0, 1], ...], "open": {"start": 0, ...}}, ...]}
 and writes one JSON object a line, in the order of targets, rivals and seeds:
     {"target": 0, "rival": "kv", "seed": 0, "membership": 9, "equivalence": 2}
 
 Counted are distinct words whose labels the algorithm was told, apart from words
 known at the start and from counterexamples. L* and KV look at the label of the
 whole word only; L# also at those of its prefixes, which are words like any others.
+Words that `open`, which may be missing, rejects are settled by what is known
+beforehand: their labels are not counted, nor are equivalence queries that one of
+them answers.
 """
 
 import json
@@ -33,6 +36,8 @@ class Target(SUL):
         self.accepting = set(table["accepting"])
         self.prefixes = prefixes
         self.free = {tuple(word) for word in table["known"]}
+        everything = {"start": 0, "accepting": [0], "delta": [[0] * table["symbols"]]}
+        self.open = table.get("open", everything)
         self.asked = set()
         self.pre()
 
@@ -52,7 +57,13 @@ class Target(SUL):
         self.asked.add(self.word)
 
     def count(self):
-        return len(self.asked - self.free)
+        return sum(self.is_open(word) for word in self.asked - self.free)
+
+    def is_open(self, word):
+        state = self.open["start"]
+        for symbol in word:
+            state = self.open["delta"][state][symbol]
+        return state in self.open["accepting"]
 
 
 class Teacher(Oracle):
@@ -62,10 +73,19 @@ class Teacher(Oracle):
         super().__init__(list(range(target.table["symbols"])), target)
         self.kind = kind
         self.draws = draws
+        # Whether it looks among the settled words, and how often it had to ask.
+        self.settled = False
+        self.counted = 0
 
     def find_cex(self, hypothesis):
-        self.num_queries += 1
-        start = (self.sul.table["start"], hypothesis.initial_state)
+        table, outline = self.sul.table, self.sul.open
+        start = (table["start"], hypothesis.initial_state, outline["start"])
+        self.settled = True
+        word = self.shortest(start)
+        if word is not None:
+            return word
+        self.settled = False
+        self.counted += 1
         word = self.shortest(start)
         if word is None:
             return None
@@ -75,20 +95,26 @@ class Teacher(Oracle):
         self.sul.free.add(word)
         return word
 
-    def differ(self, pair):
-        return (pair[0] in self.sul.accepting) != bool(pair[1].is_accepting)
+    def differ(self, place):
+        if (place[2] in self.sul.open["accepting"]) == self.settled:
+            return False
+        return (place[0] in self.sul.accepting) != bool(place[1].is_accepting)
 
-    def after(self, pair, symbol):
-        return (self.sul.table["delta"][pair[0]][symbol], pair[1].transitions[symbol])
+    def after(self, place, symbol):
+        return (
+            self.sul.table["delta"][place[0]][symbol],
+            place[1].transitions[symbol],
+            self.sul.open["delta"][place[2]][symbol],
+        )
 
     def shortest(self, start):
         queue, seen = deque([(start, ())]), {self.name(start)}
         while queue:
-            pair, word = queue.popleft()
-            if self.differ(pair):
+            place, word = queue.popleft()
+            if self.differ(place):
                 return word
             for symbol in self.alphabet:
-                following = self.after(pair, symbol)
+                following = self.after(place, symbol)
                 if self.name(following) not in seen:
                     seen.add(self.name(following))
                     queue.append((following, word + (symbol,)))
@@ -98,29 +124,29 @@ class Teacher(Oracle):
         """Of the lengths that some counterexample has, one; of that length any."""
         counts = {}
 
-        def count(pair, length):
-            key = (self.name(pair), length)
+        def count(place, length):
+            key = (self.name(place), length)
             if key not in counts:
                 if length == 0:
-                    counts[key] = int(self.differ(pair))
+                    counts[key] = int(self.differ(place))
                 else:
-                    nexts = (self.after(pair, symbol) for symbol in self.alphabet)
+                    nexts = (self.after(place, symbol) for symbol in self.alphabet)
                     counts[key] = sum(count(following, length - 1) for following in nexts)
             return counts[key]
 
         lengths = [n for n in range(longest + 1) if count(start, n)]
         left = self.draws.choice(lengths)
-        pair, word = start, ()
+        place, word = start, ()
         while left:
             left -= 1
-            weights = [count(self.after(pair, symbol), left) for symbol in self.alphabet]
+            weights = [count(self.after(place, symbol), left) for symbol in self.alphabet]
             symbol = self.draws.choices(self.alphabet, weights)[0]
-            pair, word = self.after(pair, symbol), word + (symbol,)
+            place, word = self.after(place, symbol), word + (symbol,)
         return word
 
     @staticmethod
-    def name(pair):
-        return (pair[0], pair[1].state_id)
+    def name(place):
+        return (place[0], place[1].state_id, place[2])
 
 
 RIVALS = {
@@ -151,7 +177,7 @@ def main():
                     "rival": rival,
                     "seed": seed,
                     "membership": target.count(),
-                    "equivalence": teacher.num_queries,
+                    "equivalence": teacher.counted,
                 }
                 print(json.dumps(line), flush=True)
 

@@ -5,17 +5,17 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use automata::{StateId, Symbol};
+use automata::{Dfa, StateId, Symbol};
 use serde::Deserialize;
 use serde_json::json;
 
+use super::case::{Case, Setting};
 use super::contender::RIVALS;
 use super::experiment::Plan;
 use super::run::Run;
-use super::subject::Subject;
 use crate::evidence::Fact;
 use crate::learner::Counts;
-use crate::oracle::{Counterexamples, Target};
+use crate::oracle::Counterexamples;
 
 /// What Python runs; it tells its input and output itself.
 const SCRIPT: &str = include_str!("rivals.py");
@@ -52,13 +52,18 @@ struct Line {
 ///
 /// If Python or the library is missing, or fails.
 pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
+    let cases = plan.targets.iter().enumerate();
+    let cases: Vec<(usize, &Case)> = cases
+        .filter_map(|(place, subject)| Some((place, subject.language()?)))
+        .filter(|(_, case)| case.setting().is_none_or(Setting::is_boundless))
+        .collect();
     let task = json!({
         "counterexamples": match plan.counterexamples {
             Counterexamples::Shortest => "shortest",
             Counterexamples::Random => "random",
         },
         "seeds": plan.seeds().collect::<Vec<_>>(),
-        "targets": plan.targets.iter().filter_map(Subject::language).map(table).collect::<Vec<_>>(),
+        "targets": cases.iter().map(|(_, case)| table(case)).collect::<Vec<_>>(),
     });
     let mut child = Command::new(python)
         .args(["-c", SCRIPT])
@@ -87,7 +92,7 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
         let known = |line: &Line| {
             let rival = RIVALS.iter().find(|rival| rival.key == line.rival)?;
             Some(Run {
-                target: line.target,
+                target: cases.get(line.target)?.0,
                 contender: rival.key,
                 cost,
                 errors: 0,
@@ -110,24 +115,32 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
 }
 
 /// A target for the script.
-fn table(target: &Target) -> serde_json::Value {
-    let dfa = target.dfa();
-    let states = || dfa.states();
+fn table(case: &Case) -> serde_json::Value {
+    let target = case.target();
+    let mut table = automaton(target.dfa());
     let known = target.known().iter().filter_map(|fact| match fact {
         Fact::Label { atom, .. } => Some(atom.iter().map(Symbol::index).collect::<Vec<_>>()),
         _ => None,
     });
+    table["known"] = json!(known.collect::<Vec<_>>());
+    if let Some(setting) = case.setting() {
+        table["open"] = automaton(setting.prior.open());
+    }
+    table
+}
+
+fn automaton(dfa: &Dfa) -> serde_json::Value {
     let row = |state| {
         let symbols = dfa.alphabet().symbols();
         symbols
             .map(|symbol| dfa.next(state, symbol).index())
             .collect::<Vec<_>>()
     };
+    let accepting = dfa.states().filter(|&state| dfa.is_accepting(state));
     json!({
         "symbols": dfa.alphabet().len(),
         "start": dfa.start().index(),
-        "accepting": states().filter(|&q| dfa.is_accepting(q)).map(StateId::index).collect::<Vec<_>>(),
-        "delta": states().map(row).collect::<Vec<_>>(),
-        "known": known.collect::<Vec<_>>(),
+        "accepting": accepting.map(StateId::index).collect::<Vec<_>>(),
+        "delta": dfa.states().map(row).collect::<Vec<_>>(),
     })
 }

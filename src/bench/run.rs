@@ -1,22 +1,24 @@
 //! Does what a plan says: one scripted run after the other, on all cores.
 
+use std::sync::Arc;
 use std::time::Duration;
 
+use automata::{Dfa, Word};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
+use super::case::Setting;
 use super::clock::thread_cpu;
 use super::contender::Contender;
 use super::experiment::Plan;
 use super::subject::Subject;
-use super::trial::{TrialError, teach};
-use crate::concept::{ConceptClass, DfaClass};
-use crate::evidence::Fact;
+use super::trial::{Report, TrialError, teach};
+use crate::concept::{DfaClass, Point, PriorError};
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Counts, EQUIVALENCE_COST, Learner};
-use crate::oracle::{ScriptedTeacher, Teacher, TeacherSettings};
+use crate::learner::{Config, Counts, EQUIVALENCE_COST, Learner, Question};
+use crate::oracle::{MonotoneTarget, ScriptedTeacher, SituatedTeacher, Target, TeacherSettings};
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -78,7 +80,18 @@ pub struct RunError {
     target: String,
     contender: &'static str,
     seed: u64,
-    source: TrialError,
+    source: Box<Fault>,
+}
+
+/// Why it could not.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum Fault {
+    #[error("{0}")]
+    Trial(#[from] TrialError),
+    #[error("{0}")]
+    Prior(#[from] PriorError),
+    #[error("question {number} is about a behaviour that is settled or cannot happen")]
+    Settled { number: u32 },
 }
 
 /// More questions than any run should need.
@@ -149,73 +162,134 @@ pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError
 }
 
 fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
-    let settings = TeacherSettings {
+    let noisy = plan.errors.iter().any(|&errors| errors > 0);
+    let settings = Settings {
+        engine: EngineChoice::Auto,
+        max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
+    };
+    let config = job.contender.config(job.cost, job.seed);
+    let teacher = TeacherSettings {
         order: plan.order,
         counterexamples: plan.counterexamples,
         error_rate: f64::from(job.errors) / 100.0,
         seed: job.seed,
     };
-    match &plan.targets[job.target] {
-        Subject::Language(target) => {
-            let noisy = plan.errors.iter().any(|&errors| errors > 0);
-            let bounds = Settings {
-                engine: EngineChoice::Auto,
-                max_states: if noisy { MAX_STATES_NOISY } else { MAX_STATES },
+    let subject = &plan.targets[job.target];
+    let run = match subject {
+        Subject::Language(case) => {
+            let report = match case.setting() {
+                None => alone(case.target(), config, settings, teacher),
+                Some(setting) => situated(case.target(), setting, config, settings, teacher),
             };
-            let class = DfaClass::new(target.dfa().alphabet().clone(), bounds);
-            let teacher = ScriptedTeacher::new(target, settings);
-            let known = target.known().to_vec();
-            converse(plan, job, class, known, teacher, |learned| {
-                learned.is_equivalent(target.dfa()) == Ok(true)
-            })
+            report.map(|report| done(job, report))
         }
         Subject::Monotone(target) => {
-            let teacher = target.teacher(settings);
-            converse(plan, job, target.class(), Vec::new(), teacher, |learned| {
-                learned == target.parameter()
-            })
+            let report = monotone(target, config, teacher);
+            report.map(|report| done(job, report))
         }
+    };
+    run.map_err(|source| RunError {
+        target: subject.name().to_owned(),
+        contender: job.contender.key,
+        seed: job.seed,
+        source: Box::new(source),
+    })
+}
+
+/// The run that came to this.
+fn done<C>(job: &Job, (report, equivalent): (Report<C>, bool)) -> Run {
+    Run {
+        target: job.target,
+        contender: job.contender.key,
+        cost: job.cost,
+        errors: job.errors,
+        seed: job.seed,
+        equivalent,
+        counts: report.counts,
+        dropped: report.dropped,
+        hurried: report.hurried,
+        question_times: report.question_times,
     }
 }
 
-/// Lets the teacher teach a learner of the class.
-fn converse<C, T>(
-    plan: &Plan,
-    job: &Job,
-    class: C,
-    known: Vec<Fact<C::Atom>>,
-    mut teacher: T,
-    is_right: impl Fn(&C::Concept) -> bool,
-) -> Result<Run, RunError>
-where
-    C: ConceptClass,
-    T: Teacher<Atom = C::Atom, Concept = C::Concept>,
-{
-    let config = job.contender.config(job.cost, job.seed);
-    let mut learner = Learner::new(class, config, known);
+/// A run about a monotone predicate, and whether it ended with the same.
+fn monotone(
+    target: &MonotoneTarget,
+    config: Config,
+    teacher: TeacherSettings,
+) -> Result<(Report<Point>, bool), Fault> {
+    let mut learner = Learner::new(target.class(), config, Vec::new());
+    let report = teach(
+        &mut learner,
+        &mut target.teacher(teacher),
+        MAX_QUESTIONS,
+        thread_cpu,
+        |_| {},
+    )?;
+    let equivalent = report.learned.as_ref() == Some(target.parameter());
+    Ok((report, equivalent))
+}
+
+/// A run in which all words can be shown, and whether it ended equivalent.
+fn alone(
+    target: &Target,
+    config: Config,
+    settings: Settings,
+    teacher: TeacherSettings,
+) -> Result<(Report<Dfa>, bool), Fault> {
+    let class = DfaClass::new(target.dfa().alphabet().clone(), settings);
+    let mut learner = Learner::new(class, config, target.known().to_vec());
+    let mut teacher = ScriptedTeacher::new(target, teacher);
     let report = teach(
         &mut learner,
         &mut teacher,
         MAX_QUESTIONS,
         thread_cpu,
         |_| {},
-    )
-    .map_err(|source| RunError {
-        target: plan.targets[job.target].name().to_owned(),
-        contender: job.contender.key,
-        seed: job.seed,
-        source,
-    })?;
-    Ok(Run {
-        target: job.target,
-        contender: job.contender.key,
-        cost: job.cost,
-        errors: job.errors,
-        seed: job.seed,
-        equivalent: report.learned.as_ref().is_some_and(is_right),
-        counts: report.counts,
-        dropped: report.dropped,
-        hurried: report.hurried,
-        question_times: report.question_times,
-    })
+    )?;
+    let learned = report.learned.as_ref();
+    let equivalent = learned.is_some_and(|dfa| dfa.is_equivalent(target.dfa()) == Ok(true));
+    Ok((report, equivalent))
+}
+
+/// A run in a setting, and whether what it learned agrees with the target there.
+/// That no question is settled or impossible is checked.
+fn situated(
+    target: &Target,
+    setting: &Setting,
+    config: Config,
+    settings: Settings,
+    teacher: TeacherSettings,
+) -> Result<(Report<Dfa>, bool), Fault> {
+    let class = setting.class(settings)?;
+    let known = class.examples(target.known())?;
+    let mut learner = Learner::new(class, config, known);
+    let open = setting.prior.open().clone();
+    let mut teacher = SituatedTeacher::new(Arc::clone(&setting.world), open, target, teacher);
+    let mut settled = None;
+    let report = teach(
+        &mut learner,
+        &mut teacher,
+        MAX_QUESTIONS,
+        thread_cpu,
+        |asked| {
+            let words = match asked.question {
+                Question::Membership { atom } => vec![atom],
+                Question::Comparison { first, second } => vec![first, second],
+                Question::Equivalence { .. } => Vec::new(),
+            };
+            let is_open = |word: &&Word| {
+                setting.prior.settled(word).is_none() && setting.world.is_feasible(word)
+            };
+            if !words.iter().all(is_open) {
+                settled.get_or_insert(asked.number);
+            }
+        },
+    )?;
+    if let Some(number) = settled {
+        return Err(Fault::Settled { number });
+    }
+    let learned = report.learned.as_ref();
+    let equivalent = learned.is_some_and(|part| setting.difference(part, target.dfa()).is_none());
+    Ok((report, equivalent))
 }

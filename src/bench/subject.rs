@@ -1,12 +1,13 @@
 //! What is taught in an experiment: a language, or a monotone predicate.
 
+use super::case::Case;
 use crate::oracle::{MonotoneTarget, Target};
 
-/// A target.
+/// A target, a language with its setting.
 #[derive(Clone, Debug)]
 pub enum Subject {
     /// A language.
-    Language(Target),
+    Language(Case),
     /// A monotone predicate.
     Monotone(MonotoneTarget),
 }
@@ -15,7 +16,7 @@ impl Subject {
     /// What it is called.
     pub fn name(&self) -> &str {
         match self {
-            Self::Language(target) => target.name(),
+            Self::Language(case) => case.name(),
             Self::Monotone(target) => target.name(),
         }
     }
@@ -23,7 +24,7 @@ impl Subject {
     /// The number of states, or of points per axis.
     pub fn size(&self) -> usize {
         match self {
-            Self::Language(target) => target.dfa().size(),
+            Self::Language(case) => case.target().dfa().size(),
             Self::Monotone(target) => target.parameter().size(),
         }
     }
@@ -31,15 +32,15 @@ impl Subject {
     /// The number of symbols, or of dimensions.
     pub fn width(&self) -> usize {
         match self {
-            Self::Language(target) => target.dfa().alphabet().len(),
+            Self::Language(case) => case.target().dfa().alphabet().len(),
             Self::Monotone(target) => target.dimensions(),
         }
     }
 
     /// The language, if it is one.
-    pub fn language(&self) -> Option<&Target> {
+    pub fn language(&self) -> Option<&Case> {
         match self {
-            Self::Language(target) => Some(target),
+            Self::Language(case) => Some(case),
             Self::Monotone(_) => None,
         }
     }
@@ -47,12 +48,18 @@ impl Subject {
 
 impl From<Target> for Subject {
     fn from(target: Target) -> Self {
-        Self::Language(target)
+        Self::Language(target.into())
     }
 }
 
 impl From<MonotoneTarget> for Subject {
     fn from(target: MonotoneTarget) -> Self {
         Self::Monotone(target)
+    }
+}
+
+impl From<Case> for Subject {
+    fn from(case: Case) -> Self {
+        Self::Language(case)
     }
 }

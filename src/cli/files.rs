@@ -95,6 +95,20 @@ pub(crate) fn read(path: &Path, asked: Option<Format>) -> anyhow::Result<Content
     parse(&text(path)?).with_context(|| path.display().to_string())
 }
 
+/// Whether the file is a task: TOML, or JSON with symbols. One that cannot be read is
+/// none.
+pub(crate) fn is_task(path: &Path) -> bool {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("toml") => true,
+        Some("json") => {
+            let text = std::fs::read(path).unwrap_or_default();
+            let value: Option<serde_json::Value> = serde_json::from_slice(&text).ok();
+            value.is_some_and(|value| value.get("symbols").is_some())
+        }
+        _ => false,
+    }
+}
+
 /// Reads an automaton with its name and provenance.
 pub(crate) fn read_automaton(path: &Path, asked: Option<Format>) -> anyhow::Result<Document> {
     match read(path, asked)? {

@@ -20,7 +20,6 @@ use automata::Dfa;
 use automata::format::json::{Document, Provenance};
 
 use self::converse::converse;
-use self::situation::Situation;
 use self::teller::Words;
 use self::values::Promise;
 use super::files::{self, Content, Format};
@@ -32,6 +31,7 @@ use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, S
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, TeacherSettings,
 };
+use crate::task::{Situation, TaskFile};
 use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
@@ -46,6 +46,7 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target task.json --membership-cost 8 --save learned.json
   memrep learn --target robot --prior 'avoid R' --prior 'reach Y'
   memrep learn --target robot --prior ry.json --grid room.txt --steps 30
+  memrep learn --target examples/tasks/robot-recharge.toml --trace
   memrep learn --target task.json --pool recordings.jsonl --no-empty-word
   memrep learn --target monotone:2:10 --trace
   memrep learn --target finite:manners.csv#polite --strategy thesis
@@ -56,7 +57,9 @@ Targets: tomita:1 to tomita:7 (Tomita's languages over 0 and 1), tomita:3t (the
 third in the dissertation's three-state form), zeros:N (no run of more than N
 zeros), modulo:K (words over `a` whose length is divisible by K), robot (Fig. 5.2
 of the dissertation), random:N and task:N (drawn at random, as in `memrep bench
-random` and `tasks`), or the path of an automaton file (json or dot).
+random` and `tasks`), or the path of an automaton file (json or dot) or of a task
+file (toml, or the same in json). A task file tells the world, what is known
+beforehand, examples, costs and strategy as well; options override what it tells.
 
 Targets of other classes, about whose options on words nothing can be said:
 monotone:D:TICKS (behaviours are points with coordinates from 0 to 1, acceptable
@@ -84,22 +87,24 @@ With --trace --format json, `shown` has the walk or the recording of every quest
 Exit status: 0 if the target was learned, 1 if the questions ran out first (also
 in the check), 2 if the arguments or a file are at fault.")]
 pub(crate) struct Args {
-    /// What to learn: a name from the list below, or an automaton file.
+    /// What to learn: a name from the list below, an automaton file, or a task file
+    /// with a target.
     #[arg(long, value_name = "T")]
     target: String,
-    /// The cost of a membership query, positive.
-    #[arg(long, value_name = "A", default_value = "4", allow_negative_numbers = true, value_parser = values::finite_cost)]
-    membership_cost: f64,
-    /// The cost of a comparison, positive; `inf`: never ask one.
-    #[arg(long, value_name = "B", default_value = "1", allow_negative_numbers = true, value_parser = values::cost)]
-    comparison_cost: f64,
+    /// The cost of a membership query, positive; 4 if nothing else is said.
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = values::finite_cost)]
+    membership_cost: Option<f64>,
+    /// The cost of a comparison, positive; `inf`: never ask one. 1 if nothing else is
+    /// said.
+    #[arg(long, value_name = "B", allow_negative_numbers = true, value_parser = values::cost)]
+    comparison_cost: Option<f64>,
     /// The cost of an equivalence query, 0 or more; four times a membership query
     /// if not given. Strategies bayes and exp4+ show an automaton when that is worth it.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = values::cost_or_nothing)]
     equivalence_cost: Option<f64>,
-    /// How questions are chosen.
-    #[arg(long, value_name = "S", default_value = "bayes")]
-    strategy: Strategy,
+    /// How questions are chosen; bayes if nothing else is said.
+    #[arg(long, value_name = "S")]
+    strategy: Option<Strategy>,
     /// The preference order of the teacher.
     #[arg(long, value_name = "ORDER", default_value = "ordered")]
     teacher: Order,
@@ -154,12 +159,13 @@ pub(crate) struct Args {
     /// that gives the symbol when it is entered.
     #[arg(long, value_name = "FILE")]
     grid: Option<PathBuf>,
-    /// The steps that a walk through the grid has at most.
-    #[arg(long, value_name = "N", default_value = "40", value_parser = clap::value_parser!(u16).range(1..))]
-    steps: u16,
-    /// When a tile of the grid gives its symbol.
-    #[arg(long, value_name = "WHEN", default_value = "entry")]
-    labelling: Labelling,
+    /// The steps that a walk through the grid has at most; 40 if nothing else is
+    /// said.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    steps: Option<u16>,
+    /// When a tile of the grid gives its symbol; entry if nothing else is said.
+    #[arg(long, value_name = "WHEN")]
+    labelling: Option<Labelling>,
     /// Ask only about the recordings in this file of JSON lines, such as
     /// `{"id":"run-1","word":["a","b"]}`.
     #[arg(long, value_name = "FILE", conflicts_with = "grid")]
@@ -181,23 +187,24 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if args.robust && args.strategy != Strategy::Bayes {
-        anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    if let Some(status) = classes::run(args)? {
+        return Ok(status);
     }
-    if args.save_part.is_some() && args.prior.is_empty() && args.suffices.is_empty() {
+    let (target, file) = target(args)?;
+    let task = file.as_ref().map(|file| &file.task);
+    let told = task.map(|task| task.costs).unwrap_or_default();
+    let membership_cost = args.membership_cost.or(told.membership).unwrap_or(4.0);
+    let strategy = args.strategy.or(task.and_then(|task| task.strategy));
+    let strategy = strategy.unwrap_or(Strategy::Bayes);
+    check_promises(args, strategy)?;
+    let nothing_known = args.prior.is_empty()
+        && args.suffices.is_empty()
+        && task.is_none_or(|task| task.prior.is_empty());
+    if args.save_part.is_some() && nothing_known {
         anyhow::bail!(
             "without `--prior` or `--suffices` all is learned: use `--save` in place of `--save-part`"
         );
     }
-    if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
-        anyhow::bail!(
-            "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
-        );
-    }
-    if let Some(status) = classes::run(args)? {
-        return Ok(status);
-    }
-    let target = target(args)?;
     let alphabet = target.dfa().alphabet().clone();
     let usual_bound = if args.error_rate > 0.0 && !args.robust {
         8
@@ -206,12 +213,21 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let settings = Settings {
         engine: EngineChoice::Auto,
-        max_states: usize::from(args.max_states.unwrap_or(usual_bound)),
+        max_states: (args.max_states.map(usize::from))
+            .or(file.as_ref().and_then(|file| file.max_states))
+            .unwrap_or(usual_bound),
     };
-    let (config, teacher) = (config(args), teacher(args));
+    let config = Config {
+        strategy,
+        membership_cost,
+        comparison_cost: args.comparison_cost.or(told.comparison).unwrap_or(1.0),
+        equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
+        ..config(args)
+    };
+    let teacher = teacher(args);
     let known = target.known().to_vec();
     let mut beyond = None;
-    let (report, doubts) = match situation::read(args, &alphabet)? {
+    let (report, doubts) = match situation::read(args, &alphabet, file.as_ref())? {
         None => {
             let class = DfaClass::new(alphabet.clone(), settings);
             let mut learner = Learner::new(class, config, known);
@@ -251,10 +267,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         alphabet,
         world: None,
     };
-    let name = target.name();
     summary::tell(
         args,
-        name,
+        strategy,
+        target.name(),
         &words,
         &report,
         doubts.as_ref(),
@@ -263,14 +279,27 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(status(&report))
 }
 
-/// What the learner is told.
+/// Refuses what strategy and teacher cannot keep.
+fn check_promises(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
+    if args.robust && strategy != Strategy::Bayes {
+        anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    }
+    if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
+        anyhow::bail!(
+            "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
+        );
+    }
+    Ok(())
+}
+
+/// What the learner is told by the arguments alone.
 fn config(args: &Args) -> Config {
+    let membership_cost = args.membership_cost.unwrap_or(4.0);
     Config {
-        strategy: args.strategy,
-        membership_cost: args.membership_cost,
-        comparison_cost: args.comparison_cost,
-        equivalence_cost: (args.equivalence_cost)
-            .unwrap_or(EQUIVALENCE_COST * args.membership_cost),
+        strategy: args.strategy.unwrap_or(Strategy::Bayes),
+        membership_cost,
+        comparison_cost: args.comparison_cost.unwrap_or(1.0),
+        equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
         shortest_counterexamples: args.promise.is_some(),
         robust: args.robust,
         conformance: args.conformance,
@@ -299,25 +328,42 @@ fn status<C>(report: &Report<C>) -> ExitCode {
     }
 }
 
-/// The target of this name, or else of this file.
-fn target(args: &Args) -> anyhow::Result<Target> {
+/// The target of this name, or else of this file; and the file, if it is a task.
+fn target(args: &Args) -> anyhow::Result<(Target, Option<TaskFile>)> {
     let path = PathBuf::from(&args.target);
-    let target = match Target::named(&args.target) {
+    let (target, file) = match Target::named(&args.target) {
         Err(error @ TargetError::Unknown(_)) => {
             // A path that is not there was more likely meant as a name.
             if path.extension().is_none() && !path.exists() {
                 return Err(error.into());
             }
-            let document = files::read_automaton(&path, None)?;
-            Target::automaton(&args.target, &document.dfa)
+            if files::is_task(&path) {
+                let file = TaskFile::open(&path)?;
+                (task_target(&args.target, &file)?, Some(file))
+            } else {
+                let document = files::read_automaton(&path, None)?;
+                (Target::automaton(&args.target, &document.dfa), None)
+            }
         }
-        named => named?,
+        named => (named?, None),
     };
-    Ok(if args.no_empty_word {
+    let target = if args.no_empty_word {
         target.without_known()
     } else {
         target
-    })
+    };
+    Ok((target, file))
+}
+
+/// What the task's file says that the teacher has in mind.
+fn task_target(name: &str, file: &TaskFile) -> anyhow::Result<Target> {
+    let Some(dfa) = &file.target else {
+        anyhow::bail!(
+            "{name} has no target for a scripted teacher: add `target`, such as `target = [\"avoid X\", \"reach Y\"]`"
+        );
+    };
+    let known = file.task.known(&file.task.alphabet());
+    Ok(Target::automaton(name, dfa).with_known(known))
 }
 
 fn save(

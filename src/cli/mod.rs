@@ -12,6 +12,7 @@ mod learn;
 mod output;
 #[cfg(feature = "server")]
 mod serve;
+mod task;
 
 use std::process::ExitCode;
 
@@ -46,6 +47,8 @@ enum Command {
     Equivalent(equivalent::Args),
     /// Convert automata and samples between file formats.
     Convert(convert::Args),
+    /// Check task files, and write new ones.
+    Task(task::Args),
     /// Run an experiment and write its tables.
     Bench(bench::Args),
 }
@@ -58,6 +61,7 @@ pub fn main() -> ExitCode {
         Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::Equivalent(args)) => equivalent::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Serve(args)) => serve::run(args),

@@ -130,6 +130,12 @@ impl Target {
         &self.known
     }
 
+    /// The same target with this known at the start.
+    #[must_use]
+    pub fn with_known(self, known: Vec<Fact<Word>>) -> Self {
+        Self { known, ..self }
+    }
+
     /// The same target with nothing known at the start.
     #[must_use]
     pub fn without_known(mut self) -> Self {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use automata::{Dfa, Word};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{Path, Query, State};
@@ -16,11 +17,13 @@ use super::AppState;
 use super::error::{ApiError, WebError};
 use super::export::{self, Format};
 use super::forms;
+use crate::learner::Question;
 use crate::session::{
     Automaton, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session, Setup,
     Task, ready,
 };
 use crate::store::SessionId;
+use crate::world::Shown;
 
 type Answer = Result<Json<Value>, ApiError>;
 type Body = Result<Bytes, BytesRejection>;
@@ -65,7 +68,13 @@ async fn create(State(app): State<AppState>, body: Body) -> Result<Response, Api
     fields.only(&known)?;
     let task = match fields.get("task") {
         Some(Value::String(name)) => ready(name).map_err(|error| error.under("task"))?,
-        Some(task) => Task::from_json(task).map_err(|error| error.under("task"))?,
+        Some(task) => {
+            // A world is searched for the examples: not on the threads that listen.
+            let task = task.clone();
+            let read = tokio::task::spawn_blocking(move || Task::from_json(&task));
+            let read = read.await.map_err(WebError::internal)?;
+            read.map_err(|error| error.under("task"))?
+        }
         None => {
             return Err(Malformed::new(
                 "task",
@@ -74,7 +83,7 @@ async fn create(State(app): State<AppState>, body: Body) -> Result<Response, Api
             .into());
         }
     };
-    let setup = Setup::from_json(&fields)?;
+    let setup = Setup::of(&task).with(&fields)?;
     let id = app.teaching.create(task, setup).await?;
     Ok((StatusCode::CREATED, Json(json!({"id": id.to_string()}))).into_response())
 }
@@ -108,7 +117,7 @@ async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
             "question": open,
             "counts": session.counts(),
             "answers": session.standing().iter().map(|s| s.number).collect::<Vec<_>>(),
-            "hypothesis": session.hypothesis().map(Automaton::of),
+            "hypothesis": session.hypothesis().as_ref().map(Automaton::of),
         })
     };
     Ok(Json(app.teaching.look(id, view).await?))
@@ -125,6 +134,19 @@ fn describe(session: &Session, position: &Position) -> Value {
             let question = QuestionText::of(&asked.question, session.alphabet());
             let mut value = serde_json::to_value(question).unwrap_or_default();
             value["number"] = (*number).into();
+            let words: &[&Word] = match &asked.question {
+                Question::Membership { atom } => &[atom],
+                Question::Comparison { first, second } => &[first, second],
+                Question::Equivalence { hypothesis } => {
+                    show_rule(&mut value, session, hypothesis);
+                    &[]
+                }
+            };
+            let shown = words.iter().filter_map(|word| session.world()?.shown(word));
+            let shown: Vec<Shown<'_>> = shown.collect();
+            if !shown.is_empty() {
+                value["shown"] = json!(shown);
+            }
             if asked.hurried {
                 value["hurried"] = true.into();
             }
@@ -137,8 +159,18 @@ fn describe(session: &Session, position: &Position) -> Value {
             value
         }
         Position::Done(hypothesis) => {
-            json!({"kind": "done", "hypothesis": Automaton::of(hypothesis)})
+            let mut value = json!({"kind": "done"});
+            show_rule(&mut value, session, hypothesis);
+            value
         }
+    }
+}
+
+/// The whole automaton; and the learned part, where that is not all of it.
+fn show_rule(value: &mut Value, session: &Session, learned: &Dfa) {
+    value["hypothesis"] = json!(Automaton::of(&session.whole(learned)));
+    if session.has_prior() {
+        value["learned"] = json!(Automaton::of(learned));
     }
 }
 
@@ -216,11 +248,27 @@ async fn automaton(
         .find(|(key, _)| key == "format")
         .map_or("json", |(_, value)| value.as_str());
     let format = Format::named(named)?;
+    let part = query.iter().find(|(key, _)| key == "part");
+    let is_whole = match part.map_or("whole", |(_, value)| value.as_str()) {
+        "whole" => true,
+        "learned" => false,
+        other => {
+            return Err(Malformed::new(
+                "part",
+                format!("there is no part `{other}`: give whole or learned"),
+            )
+            .into());
+        }
+    };
     let shown = app
         .teaching
-        .look(id, |session| {
-            let hypothesis = session.hypothesis()?.clone();
-            Some((hypothesis, session.task().clone()))
+        .look(id, move |session| {
+            let rule = if is_whole {
+                session.hypothesis()?
+            } else {
+                session.learned()?.clone()
+            };
+            Some((rule, session.task().clone()))
         })
         .await?;
     let (hypothesis, task) = shown.ok_or(WebError::NoAutomaton)?;

@@ -58,7 +58,11 @@ impl WebError {
             }
             Self::NoMethod => StatusCode::METHOD_NOT_ALLOWED,
             Self::Refused(
-                Refusal::Unfit { .. } | Refusal::NoCounterexample { .. } | Refusal::BadBound { .. },
+                Refusal::Unfit { .. }
+                | Refusal::NoCounterexample { .. }
+                | Refusal::Infeasible
+                | Refusal::Settled { .. }
+                | Refusal::BadBound { .. },
             )
             | Self::Malformed(_) => StatusCode::UNPROCESSABLE_ENTITY,
             Self::Refused(_) | Self::NoAutomaton | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
@@ -82,6 +86,8 @@ impl WebError {
                 Refusal::NotStanding { .. } => "no_standing_answer",
                 Refusal::Unfit { .. } => "answer_does_not_fit",
                 Refusal::NoCounterexample { .. } => "no_counterexample",
+                Refusal::Infeasible => "infeasible",
+                Refusal::Settled { .. } => "settled_beforehand",
                 Refusal::Outdated { .. } => "hypothesis_outdated",
                 Refusal::NothingToUndo => "nothing_to_undo",
                 Refusal::BadBound { .. } => "bad_bound",
@@ -108,6 +114,7 @@ impl WebError {
                 }
                 Refusal::Unfit { .. } | Refusal::Outdated { .. } => Some("answer"),
                 Refusal::NoCounterexample { .. } => Some("label"),
+                Refusal::Infeasible | Refusal::Settled { .. } => Some("word"),
                 Refusal::BadBound { .. } => Some("max_states"),
                 Refusal::NothingToUndo => None,
             },

@@ -152,7 +152,7 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                         bar,
                         notice,
                         number: *number,
-                        rule: RuleView::of(hypothesis, task),
+                        rule: RuleView::of(&session.whole(hypothesis), task),
                         chips: chips(task),
                         names: names.join(", "),
                         empty: task.empty.clone(),
@@ -194,7 +194,7 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
             shell,
             bar,
             notice,
-            rule: RuleView::of(hypothesis, task),
+            rule: RuleView::of(&session.whole(hypothesis), task),
             counts: session.counts(),
             files: downloads(id),
             agreed: session
@@ -371,7 +371,7 @@ async fn drawing(
     let id = session_id(&id)?;
     let view = |session: &Session| {
         let hypothesis = session.hypothesis().ok_or(WebError::NoAutomaton)?;
-        export::write(hypothesis, session.task(), export::Format::Svg)
+        export::write(&hypothesis, session.task(), export::Format::Svg)
     };
     let svg = app.teaching.look(id, view).await??;
     Ok(super::typed("image/svg+xml", svg))

@@ -117,6 +117,7 @@ pub(crate) async fn begin(
             }
         }
     };
-    let id = app.teaching.create(task, Setup::default()).await?;
+    let setup = Setup::of(&task);
+    let id = app.teaching.create(task, setup).await?;
     Ok(Redirect::to(&format!("/sessions/{id}")).into_response())
 }

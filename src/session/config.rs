@@ -1,10 +1,9 @@
 //! How a session's learner is set up: read from a request, kept in the log.
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
-use super::reader::{Fields, Malformed};
 use crate::learner::{Config, EQUIVALENCE_COST, Strategy};
+use crate::task::{Fields, Malformed, Task, read_cost, read_strategy};
 
 /// The work that choosing one question may do, where nothing else is said: a
 /// few seconds at most.
@@ -27,7 +26,7 @@ pub struct Setup {
     pub budget: u64,
 }
 
-/// The keys of [`Setup::from_json`].
+/// The keys of [`Setup::with`].
 pub const KEYS: [&str; 4] = ["membership_cost", "comparison_cost", "strategy", "seed"];
 
 impl Default for Setup {
@@ -43,39 +42,30 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// Reads the optional keys of a request that creates a session.
+    /// The usual one, and what the task tells instead.
+    pub fn of(task: &Task) -> Self {
+        let usual = Self::default();
+        Self {
+            strategy: task.strategy.unwrap_or(usual.strategy),
+            membership_cost: task.costs.membership.unwrap_or(usual.membership_cost),
+            comparison_cost: task.costs.comparison.unwrap_or(usual.comparison_cost),
+            ..usual
+        }
+    }
+
+    /// This one, and what the optional keys of a request that creates a session
+    /// tell instead.
     ///
     /// # Errors
     ///
     /// Names the key whose value cannot be taken, and what can.
-    pub fn from_json(fields: &Fields<'_>) -> Result<Self, Malformed> {
-        let usual = Self::default();
-        let membership_cost = match fields.get("membership_cost") {
-            None => usual.membership_cost,
-            Some(value) => positive(value).ok_or_else(|| {
-                Malformed::new("membership_cost", "give a number greater than 0, as in `4`")
-            })?,
-        };
-        let comparison_cost = match fields.get("comparison_cost") {
-            None => usual.comparison_cost,
-            Some(Value::String(text)) if text == "inf" => f64::INFINITY,
-            Some(value) => positive(value).ok_or_else(|| {
-                Malformed::new(
-                    "comparison_cost",
-                    "give a number greater than 0, as in `1`, or `\"inf\"` for no comparisons",
-                )
-            })?,
-        };
-        let strategy = match fields.get("strategy") {
-            None => usual.strategy,
-            Some(value) => serde_json::from_value(value.clone()).map_err(|_| {
-                Malformed::new(
-                    "strategy",
-                    "this strategy is unknown: give `\"bayes\"`, `\"exp4+\"`, `\"thesis\"` or \
-                     `\"membership\"`",
-                )
-            })?,
-        };
+    pub fn with(&self, fields: &Fields<'_>) -> Result<Self, Malformed> {
+        let usual = self;
+        let membership_cost =
+            read_cost(fields, "membership_cost", false)?.unwrap_or(usual.membership_cost);
+        let comparison_cost =
+            read_cost(fields, "comparison_cost", true)?.unwrap_or(usual.comparison_cost);
+        let strategy = read_strategy(fields)?.unwrap_or(usual.strategy);
         let seed = match fields.get("seed") {
             None => usual.seed,
             Some(value) => value.as_u64().ok_or_else(|| {
@@ -103,10 +93,6 @@ impl Setup {
             ..Config::default()
         }
     }
-}
-
-fn positive(value: &Value) -> Option<f64> {
-    value.as_f64().filter(|n| n.is_finite() && *n > 0.0)
 }
 
 /// A cost as a number, or `"inf"`.
@@ -143,12 +129,12 @@ mod cost {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
 
     fn read(value: &Value) -> Result<Setup, Malformed> {
-        Setup::from_json(&Fields::of(value, "").unwrap())
+        Setup::default().with(&Fields::of(value, "").unwrap())
     }
 
     #[test]

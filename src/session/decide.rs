@@ -1,12 +1,12 @@
 //! What a person or a script wants to do, checked against where the session
 //! stands, and turned into the entry to append.
 
-use automata::Word;
+use automata::{Dfa, Word};
 
 use super::event::{Event, ReplyText};
-use super::task::MAX_STATES;
 use super::{Position, Session};
 use crate::learner::{Question, Reply};
+use crate::task::MAX_STATES;
 
 /// What becomes of a wish.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +60,20 @@ pub enum Refusal {
         if *label { "accepts" } else { "rejects" }
     )]
     NoCounterexample {
+        /// The label that was claimed.
+        label: bool,
+    },
+    /// The word cannot be shown.
+    #[error(
+        "this cannot happen in the world of the task, so it says nothing here: give a behaviour that can"
+    )]
+    Infeasible,
+    /// What is known beforehand says the opposite.
+    #[error(
+        "what is known beforehand says that this is {}, whatever is learned: give another behaviour, or have the task changed",
+        if *label { "not acceptable" } else { "acceptable" }
+    )]
+    Settled {
         /// The label that was claimed.
         label: bool,
     },
@@ -182,11 +196,7 @@ impl Session {
             | (Question::Comparison { .. }, Reply::Compared(_) | Reply::Skip)
             | (Question::Equivalence { .. }, Reply::Correct) => return Ok(()),
             (Question::Equivalence { hypothesis }, Reply::Counterexample { atom, label }) => {
-                return if hypothesis.accepts(atom) == *label {
-                    Err(Refusal::NoCounterexample { label: *label })
-                } else {
-                    Ok(())
-                };
+                return self.check_counterexample(hypothesis, atom, *label);
             }
             (Question::Membership { .. }, _) => {
                 ("which judges one word", "`accept`, `reject` or `skip`")
@@ -204,6 +214,25 @@ impl Session {
             kind,
             fitting,
         })
+    }
+
+    /// Whether the word refutes the learned part, and may.
+    fn check_counterexample(&self, learned: &Dfa, word: &Word, label: bool) -> Result<(), Refusal> {
+        let mut says = learned.accepts(word);
+        if let Some(situation) = &self.situation {
+            if !situation.world.is_feasible(word) {
+                return Err(Refusal::Infeasible);
+            }
+            match situation.prior.settled(word) {
+                Some(settled) if settled != label => return Err(Refusal::Settled { label }),
+                settled => says = settled.unwrap_or(says),
+            }
+        }
+        if says == label {
+            Err(Refusal::NoCounterexample { label })
+        } else {
+            Ok(())
+        }
     }
 
     fn not_open(&self, number: u32) -> Refusal {

@@ -4,12 +4,11 @@
 use automata::{Alphabet, Dfa, Word};
 use serde::{Deserialize, Serialize};
 
-use super::automaton::Automaton;
 use super::config::Setup;
-use super::task::Task;
 use crate::evidence::Comparison;
 use crate::identify::{Cause, Contradiction};
 use crate::learner::{Question, Reply, Round};
+use crate::task::{Automaton, Task, Unreadable};
 
 /// The log's format; the first entry names it.
 pub const LOG_VERSION: u32 = 1;
@@ -25,7 +24,7 @@ pub enum Event {
         /// The version of memrep that wrote it.
         memrep: String,
         /// What is taught.
-        task: Task,
+        task: Box<Task>,
         /// How questions are chosen.
         setup: Setup,
     },
@@ -182,12 +181,6 @@ pub enum ReplyText {
         label: bool,
     },
 }
-
-/// A name in a log that its alphabet does not have, or a table in it that is no
-/// automaton.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Unreadable(pub String);
 
 fn names(alphabet: &Alphabet, word: &Word) -> Vec<String> {
     alphabet.spell(word).map(str::to_owned).collect()

@@ -8,34 +8,31 @@
 //! → (append) → [`Session::apply`]: what the learner makes of an answer is an
 //! entry of its own, so that it is computed once and shown for ever after.
 
-mod automaton;
 mod config;
 mod decide;
 mod event;
 mod explain;
-mod reader;
+mod pupil;
 mod ready;
-mod task;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use automata::{Alphabet, Dfa, Word};
 
-pub use automaton::Automaton;
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
-pub use reader::{Fields, Malformed};
 pub use ready::{NAMES as READY_NAMES, offered, ready};
-pub use task::{
-    DEFAULT_STATES, Example, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD, SymbolText, Task,
-    read_word,
-};
 
-use crate::concept::DfaClass;
+use self::pupil::Pupil;
 use crate::evidence::AnswerId;
-use crate::identify::Settings;
-use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
+use crate::learner::{Counts, Question, Reply, Round, Step};
+use crate::task::Situation;
+pub use crate::task::{
+    Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
+    Malformed, SymbolText, Task, read_word,
+};
+use crate::world::World;
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
@@ -67,7 +64,7 @@ pub enum Position {
     Asking(u32),
     /// Some standing answers contradict each other.
     Conflict(Conflict),
-    /// The teacher agreed with this automaton.
+    /// The teacher agreed with this automaton, or the part of it that is learned.
     Done(Dfa),
 }
 
@@ -87,7 +84,9 @@ pub struct Session {
     task: Task,
     setup: Setup,
     alphabet: Alphabet,
-    learner: Learner<DfaClass>,
+    /// None where all words are asked about, and nothing is known beforehand.
+    situation: Option<Situation>,
+    learner: Pupil,
     asked: BTreeMap<u32, Asked>,
     standing: Vec<Standing>,
     withdrawn: BTreeSet<u32>,
@@ -103,7 +102,7 @@ impl Session {
         Event::Created {
             log: LOG_VERSION,
             memrep: env!("CARGO_PKG_VERSION").to_owned(),
-            task,
+            task: Box::new(task),
             setup,
         }
     }
@@ -132,17 +131,20 @@ impl Session {
                 "it is of version {log}, and this memrep reads version {LOG_VERSION}: use the memrep that wrote it"
             )));
         }
-        let mut session = Self::new(task.clone(), setup.clone());
+        let fresh = Self::new(Task::clone(task), setup.clone());
+        let mut session = fresh.map_err(|message| corrupt(&message))?;
         for event in rest {
             session.apply(event)?;
         }
         Ok(session)
     }
 
-    fn new(task: Task, setup: Setup) -> Self {
+    fn new(task: Task, setup: Setup) -> Result<Self, String> {
         let alphabet = task.alphabet();
-        Self {
-            learner: fresh_learner(&task, &setup, &alphabet),
+        let situation = task.situation().map_err(|error| error.to_string())?;
+        Ok(Self {
+            learner: Pupil::new(&task, situation.as_ref(), &setup, &alphabet)?,
+            situation,
             alphabet,
             task,
             setup,
@@ -152,7 +154,7 @@ impl Session {
             position: Position::Thinking,
             awaiting: None,
             entries: 1,
-        }
+        })
     }
 
     /// Folds in the next entry of the log.
@@ -295,14 +297,12 @@ impl Session {
         let Some(asked) = self.asked.get(&number) else {
             return Err(format!("question {number} was never asked"));
         };
-        self.learner
-            .record(
-                AnswerId(number),
-                asked.question.clone(),
-                asked.round.clone(),
-                reply.clone(),
-            )
-            .map_err(|error| error.to_string())
+        self.learner.record(
+            AnswerId(number),
+            asked.question.clone(),
+            asked.round.clone(),
+            reply.clone(),
+        )
     }
 
     fn withdraw(&mut self, number: u32) -> Result<(), String> {
@@ -320,7 +320,8 @@ impl Session {
 
     /// A learner that was told the standing answers as they are now, in order.
     fn rebuild(&mut self) -> Result<(), String> {
-        self.learner = fresh_learner(&self.task, &self.setup, &self.alphabet);
+        let situation = self.situation.as_ref();
+        self.learner = Pupil::new(&self.task, situation, &self.setup, &self.alphabet)?;
         let replies: Vec<_> = self
             .standing
             .iter()
@@ -380,10 +381,35 @@ impl Session {
         self.learner.counts()
     }
 
-    /// The automaton on show: the one asked about, or the one agreed on.
+    /// The world of the task; none where it is all words, shown as they are.
+    pub fn world(&self) -> Option<&World> {
+        self.situation.as_ref().map(|situation| &*situation.world)
+    }
+
+    /// Whether something is known beforehand, beside which the rest is learned.
+    pub fn has_prior(&self) -> bool {
+        !self.task.prior.is_empty()
+    }
+
+    /// The whole automaton, of which this is the part that is learned beside what is
+    /// known beforehand: the part is what the learner asks about and the log has.
+    pub fn whole(&self, learned: &Dfa) -> Dfa {
+        match &self.situation {
+            Some(situation) if self.has_prior() => situation.prior.whole(learned),
+            _ => learned.clone(),
+        }
+    }
+
+    /// The automaton on show as a [whole](Self::whole): the one asked about, or the
+    /// one agreed on.
     ///
     /// Between those there is none: the last one shown was refuted.
-    pub fn hypothesis(&self) -> Option<&Dfa> {
+    pub fn hypothesis(&self) -> Option<Dfa> {
+        self.learned().map(|learned| self.whole(learned))
+    }
+
+    /// The part of [`Self::hypothesis`] that is learned.
+    pub fn learned(&self) -> Option<&Dfa> {
         match &self.position {
             Position::Done(hypothesis) => Some(hypothesis),
             Position::Asking(number) => match &self.asked.get(number)?.question {
@@ -393,13 +419,4 @@ impl Session {
             Position::Thinking | Position::Conflict(_) => None,
         }
     }
-}
-
-fn fresh_learner(task: &Task, setup: &Setup, alphabet: &Alphabet) -> Learner<DfaClass> {
-    let settings = Settings {
-        engine: crate::identify::EngineChoice::Auto,
-        max_states: task.max_states,
-    };
-    let class = DfaClass::new(alphabet.clone(), settings);
-    Learner::new(class, setup.config(), task.known(alphabet))
 }

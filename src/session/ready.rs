@@ -1,8 +1,9 @@
 //! The tasks that come with memrep: what the person should have in mind, the
 //! symbols, and what is known at the start; never the target itself.
 
-use super::reader::Malformed;
-use super::task::{DEFAULT_STATES, Example, MAX_STATES, SymbolText, Task};
+use crate::task::{
+    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task,
+};
 
 /// The names under which [`ready`] finds a task, for people.
 pub const NAMES: &str = "robot, tomita:1 to tomita:7, modulo:K, zeros:N";
@@ -88,6 +89,7 @@ fn robot() -> Task {
     let symbol = |name: &str, word: &str| SymbolText {
         name: name.to_owned(),
         word: Some(word.to_owned()),
+        ..SymbolText::default()
     };
     let example = |label: bool| {
         move |word: &str| Example {
@@ -112,6 +114,11 @@ fn robot() -> Task {
             "A walk is acceptable if the robot ends it recharged: it never touched lava, it never recharged while wet, and it recharged after it was last in the water. The dryer dries it. {COMPARING}"
         ),
         empty: "the robot touches nothing".to_owned(),
+        world: None,
+        prior: PriorText::default(),
+        costs: Costs::default(),
+        strategy: None,
+        practice: None,
     }
 }
 
@@ -137,6 +144,11 @@ fn modulo(divisor: usize) -> Task {
             "A sequence is acceptable if its length is divisible by {divisor}. {COMPARING}"
         ),
         empty: "an empty sequence".to_owned(),
+        world: None,
+        prior: PriorText::default(),
+        costs: Costs::default(),
+        strategy: None,
+        practice: None,
     }
 }
 
@@ -149,16 +161,16 @@ fn binary(name: String, title: String, rule: &str, needed: usize) -> Task {
         max_states: bound(needed),
         guidelines: format!("{rule} The empty sequence is acceptable. {COMPARING}"),
         empty: "an empty sequence".to_owned(),
+        world: None,
+        prior: PriorText::default(),
+        costs: Costs::default(),
+        strategy: None,
+        practice: None,
     }
 }
 
 fn plain<const N: usize>(names: [&str; N]) -> Vec<SymbolText> {
-    names
-        .map(|name| SymbolText {
-            name: name.to_owned(),
-            word: None,
-        })
-        .into()
+    names.map(SymbolText::named).into()
 }
 
 fn empty_word_accepted() -> Vec<Example> {

@@ -8,6 +8,7 @@
 pub mod grid;
 mod machine;
 pub mod pool;
+mod shown;
 mod words;
 
 use automata::{Alphabet, Dfa, Word};
@@ -16,6 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use self::grid::{ATTEMPTS, Cell, Grid, Step};
 use self::machine::Machine;
 use self::pool::{Pool, Recording};
+pub use self::shown::Shown;
 pub use self::words::Words;
 
 /// A language of feasible words, a finder of witnesses, and a picture.

@@ -8,7 +8,7 @@ use memrep::evidence::Comparison;
 use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
 use serde_json::{Value, json};
 
-fn word(alphabet: &Alphabet, value: &Value) -> Word {
+pub(crate) fn word(alphabet: &Alphabet, value: &Value) -> Word {
     let names = value
         .as_array()
         .unwrap()
@@ -17,7 +17,7 @@ fn word(alphabet: &Alphabet, value: &Value) -> Word {
     alphabet.word(names).unwrap()
 }
 
-fn dfa(value: &Value) -> Dfa {
+pub(crate) fn dfa(value: &Value) -> Dfa {
     automata::format::json::read(&value.to_string())
         .unwrap()
         .dfa
@@ -25,7 +25,7 @@ fn dfa(value: &Value) -> Dfa {
 
 /// The teacher's answer to a question of the API.
 pub(crate) fn answer(
-    teacher: &mut ScriptedTeacher,
+    teacher: &mut impl Teacher<Atom = Word, Concept = Dfa>,
     alphabet: &Alphabet,
     question: &Value,
 ) -> Value {

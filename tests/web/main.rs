@@ -8,3 +8,4 @@ mod pages;
 mod serve;
 mod site;
 mod store;
+mod worlds;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::converse::converse;
 use super::teller::{Points, Rewards, Teller};
-use super::{Args, config, status, summary, teacher};
+use super::{Args, check_promises, config, status, summary, teacher};
 use crate::cli::files;
 use crate::concept::{
     ConceptClass, Failure, FiniteConcept, FiniteTable, LinearReward, LinearRewards, MonotoneClass,
@@ -35,6 +35,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Option<ExitCode>> {
         return Ok(None);
     }
     refuse_words(args)?;
+    check_promises(args, config(args).strategy)?;
     if let Some(target) = MonotoneTarget::named(name, args.seed)? {
         let class = || target.class();
         let parameter = target.parameter().clone();
@@ -106,7 +107,8 @@ where
         save(path, format, args, teller.concept_line(learned))?;
     }
     let doubts = learner.doubts();
-    summary::tell(args, &args.target, teller, &report, doubts, None)?;
+    let strategy = config(args).strategy;
+    summary::tell(args, strategy, &args.target, teller, &report, doubts, None)?;
     Ok(status(&report))
 }
 

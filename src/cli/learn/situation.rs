@@ -11,24 +11,27 @@ use automata::{Alphabet, Dfa};
 use super::Args;
 use crate::cli::files;
 use crate::concept::{Prior, Template, TemplateError};
+use crate::task::{Situation, TaskFile, WorldText};
 use crate::world::grid::{Grid, GridMap};
 use crate::world::pool::{Pool, PoolReader};
 use crate::world::{Words, World};
 
 /// Without a grid all words up to this length can be shown.
 const LONGEST: usize = 1000;
+/// The steps of a walk where nothing else is said.
+const STEPS: usize = 40;
 
-/// What is asked about.
-pub(super) struct Situation {
-    pub(super) world: Arc<World>,
-    pub(super) prior: Prior,
-}
-
-/// The situation that the arguments describe; none if they describe none.
-pub(super) fn read(args: &Args, alphabet: &Alphabet) -> anyhow::Result<Option<Situation>> {
+/// The situation that the arguments and the task file describe; none if they
+/// describe none.
+pub(super) fn read(
+    args: &Args,
+    alphabet: &Alphabet,
+    file: Option<&TaskFile>,
+) -> anyhow::Result<Option<Situation>> {
+    let told = told(args, file)?;
     let everywhere = args.grid.is_none() && args.pool.is_none();
     if everywhere && args.prior.is_empty() && args.suffices.is_empty() {
-        return Ok(None);
+        return Ok(told);
     }
     let rules = |texts: &[String], option: &str| -> anyhow::Result<Vec<Dfa>> {
         let rule = |text: &String| {
@@ -36,17 +39,47 @@ pub(super) fn read(args: &Args, alphabet: &Alphabet) -> anyhow::Result<Option<Si
         };
         texts.iter().map(rule).collect()
     };
-    let holding = rules(&args.prior, "--prior")?;
-    let sufficing = rules(&args.suffices, "--suffices")?;
-    let world = match (&args.grid, &args.pool) {
-        (Some(path), _) => World::Grid(grid(path, alphabet, args)?),
-        (None, Some(path)) => World::Pool(pool(path, alphabet)?),
-        (None, None) => World::Words(Words::new(alphabet.clone(), LONGEST)),
+    let mut holding = rules(&args.prior, "--prior")?;
+    let mut sufficing = rules(&args.suffices, "--suffices")?;
+    if let Some(told) = &told {
+        if args.prior.is_empty() {
+            holding = told.prior.holding().to_vec();
+        }
+        if args.suffices.is_empty() {
+            sufficing = told.prior.sufficing().to_vec();
+        }
+    }
+    let world = match (&args.grid, &args.pool, told) {
+        (Some(path), ..) => Arc::new(World::Grid(grid(path, alphabet, args, file)?)),
+        (None, Some(path), _) => Arc::new(World::Pool(pool(path, alphabet)?)),
+        (None, None, Some(told)) => told.world,
+        (None, None, None) => Arc::new(World::Words(Words::new(alphabet.clone(), LONGEST))),
     };
     Ok(Some(Situation {
-        world: Arc::new(world),
+        world,
         prior: Prior::new(alphabet, holding, sufficing)?,
     }))
+}
+
+/// What the file tells, with the arguments that override a part of its grid.
+fn told(args: &Args, file: Option<&TaskFile>) -> anyhow::Result<Option<Situation>> {
+    if args.grid.is_some() || (args.steps.is_none() && args.labelling.is_none()) {
+        return Ok(file.and_then(|file| file.situation.clone()));
+    }
+    let mut task = file.map(|file| file.task.clone());
+    let world = task.as_mut().and_then(|task| task.world.as_mut());
+    let Some(WorldText::Grid {
+        steps, labelling, ..
+    }) = world
+    else {
+        anyhow::bail!("`--steps` and `--labelling` are about a grid: add `--grid FILE`");
+    };
+    *steps = args.steps.map_or(*steps, usize::from);
+    *labelling = args.labelling.unwrap_or(*labelling);
+    let situation = task.map(|task| task.situation()).transpose();
+    Ok(situation
+        .context("the grid of the task does not allow this")?
+        .flatten())
 }
 
 /// A rule by name, or else the automaton of a file.
@@ -65,12 +98,22 @@ fn rule(text: &str, alphabet: &Alphabet) -> anyhow::Result<Dfa> {
     }
 }
 
-fn grid(path: &Path, alphabet: &Alphabet, args: &Args) -> anyhow::Result<Grid> {
+fn grid(
+    path: &Path,
+    alphabet: &Alphabet,
+    args: &Args,
+    file: Option<&TaskFile>,
+) -> anyhow::Result<Grid> {
     let name = path.display();
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("`--grid {name}` cannot be read as text"))?;
-    let map = GridMap::new(alphabet, &text);
-    map.grid(alphabet.clone(), args.labelling, args.steps.into())
+    let mut map = GridMap::new(alphabet, &text);
+    if let Some(file) = file {
+        map.marks = file.task.marks().collect();
+    }
+    let labelling = args.labelling.unwrap_or_default();
+    let steps = args.steps.map_or(STEPS, usize::from);
+    map.grid(alphabet.clone(), labelling, steps)
         .with_context(|| format!("`--grid {name}` is no grid for this task"))
 }
 

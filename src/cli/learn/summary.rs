@@ -70,6 +70,7 @@ fn rounded(number: f64) -> f64 {
 /// Tells what came of it.
 pub(super) fn tell<L: Teller>(
     args: &Args,
+    strategy: Strategy,
     target: &str,
     teller: &L,
     report: &Report<L::Concept>,
@@ -83,7 +84,7 @@ pub(super) fn tell<L: Teller>(
         let size = (report.learned.as_ref()).map(|learned| teller.size(learned));
         let summary = Summary {
             target,
-            strategy: args.strategy,
+            strategy,
             seed: args.seed,
             equivalent: report.learned.is_some(),
             states: (L::NOUNS.key == Key::Word).then_some(size),

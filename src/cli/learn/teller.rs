@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::cli::output::{self, Nouns, counted};
 use crate::concept::{Behaviour, FiniteAtom, FiniteConcept, FiniteTable, LinearRewards, Point};
-use crate::world::{Trajectory, World};
+use crate::world::{Shown, World};
 
 /// Tells of the atoms and concepts of one class.
 pub(super) trait Teller {
@@ -45,16 +45,6 @@ pub(super) trait Teller {
         let _ = atom;
         None
     }
-}
-
-/// What shows a word.
-#[derive(Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Shown<'a> {
-    /// The rows and columns of a walk's cells, from its start.
-    Walk(Vec<[usize; 2]>),
-    /// The recording of this name.
-    Recording(&'a str),
 }
 
 /// Words and automata, in a world.
@@ -102,15 +92,7 @@ impl Teller for Words<'_> {
     }
 
     fn shown<'a>(&'a self, atom: &Word) -> Option<Shown<'a>> {
-        match self.world?.trajectory(atom)? {
-            Trajectory::Word(_) => None,
-            Trajectory::Walk { from, steps } => {
-                let cells = std::iter::once(from).chain(steps.iter().map(|step| step.to));
-                let cells = cells.map(|at| [at.row, at.column]).collect();
-                Some(Shown::Walk(cells))
-            }
-            Trajectory::Recording(recording) => Some(Shown::Recording(&recording.id)),
-        }
+        self.world?.shown(atom)
     }
 }
 

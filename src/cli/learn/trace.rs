@@ -3,11 +3,12 @@
 
 use serde::Serialize;
 
-use super::teller::{Shown, Teller};
+use super::teller::Teller;
 use crate::bench::{Asked, Dropped};
 use crate::cli::output::{self, Key, Nouns, Output};
 use crate::evidence::{AnswerId, Comparison};
 use crate::learner::{Question, Reply};
+use crate::world::Shown;
 
 /// One line of the trace for programs; words stand under `word`, and the atoms of
 /// other classes under `atom`.

@@ -15,6 +15,7 @@ mod search;
 mod tour;
 
 use automata::{Alphabet, Symbol};
+use serde::Serialize;
 
 use self::cells::Cells;
 pub use self::map::GridMap;
@@ -38,7 +39,8 @@ pub enum Tile {
 }
 
 /// When a tile gives its symbol.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Labelling {
     /// When it is entered. To stay gives nothing.
     #[default]

@@ -1,9 +1,9 @@
-//! Reads the fields of JSON objects from outside, and says by path what is
-//! wrong with them.
+//! Reads the fields of objects from outside, JSON or TOML, and says by path what
+//! is wrong with them.
 
 use serde_json::{Map, Value};
 
-/// Something that is wrong with JSON from outside.
+/// Something that is wrong with what came from outside.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", if path.is_empty() { String::new() } else { format!("{path}: ") })]
 pub struct Malformed {
@@ -34,7 +34,18 @@ impl Malformed {
     }
 }
 
-/// The fields of one JSON object.
+/// The faults found so far, where reading goes on after one.
+#[derive(Debug, Default)]
+pub(super) struct Faults(pub(super) Vec<Malformed>);
+
+impl Faults {
+    /// What was read; none, and the fault is kept, where it could not be.
+    pub(super) fn keep<T>(&mut self, read: Result<T, Malformed>) -> Option<T> {
+        read.map_err(|fault| self.0.push(fault)).ok()
+    }
+}
+
+/// The fields of one object.
 pub struct Fields<'a> {
     map: &'a Map<String, Value>,
     path: &'a str,
@@ -49,7 +60,7 @@ impl<'a> Fields<'a> {
     pub fn of(value: &'a Value, path: &'a str) -> Result<Self, Malformed> {
         match value.as_object() {
             Some(map) => Ok(Self { map, path }),
-            None => Err(Malformed::new(path, "give a JSON object")),
+            None => Err(Malformed::new(path, "give an object (in TOML a table)")),
         }
     }
 
@@ -59,16 +70,26 @@ impl<'a> Fields<'a> {
     ///
     /// Names the first unknown key and the known ones.
     pub fn only(&self, known: &[&str]) -> Result<(), Malformed> {
-        match self.map.keys().find(|key| !known.contains(&key.as_str())) {
-            None => Ok(()),
-            Some(key) => Err(Malformed::new(
+        self.unknown(known).next().map_or(Ok(()), Err)
+    }
+
+    /// The faults of all keys other than these.
+    pub fn unknown(&self, known: &[&str]) -> impl Iterator<Item = Malformed> {
+        let foreign = |key: &&String| !known.contains(&key.as_str());
+        self.map.keys().filter(foreign).map(|key| {
+            Malformed::new(
                 self.path_of(key),
                 format!(
                     "`{key}` is an unknown key: the known ones are {}",
                     known.join(", ")
                 ),
-            )),
-        }
+            )
+        })
+    }
+
+    /// The entries, by key.
+    pub fn entries(&self) -> impl Iterator<Item = (&'a str, &'a Value)> {
+        self.map.iter().map(|(key, value)| (key.as_str(), value))
     }
 
     /// What stands under `key`; `None` for nothing or `null`.
@@ -87,7 +108,7 @@ impl<'a> Fields<'a> {
             Some(value) => value
                 .as_array()
                 .map(Vec::as_slice)
-                .ok_or_else(|| Malformed::new(self.path_of(key), "give a JSON array")),
+                .ok_or_else(|| Malformed::new(self.path_of(key), "give an array")),
         }
     }
 
@@ -170,7 +191,8 @@ impl<'a> Fields<'a> {
         }
     }
 
-    fn path_of(&self, key: &str) -> String {
+    /// The path of what stands under `key`.
+    pub fn path_of(&self, key: &str) -> String {
         if self.path.is_empty() {
             key.to_owned()
         } else {

@@ -1,0 +1,165 @@
+//! Task files: TOML, or the same in JSON; every fault with its line and column.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use automata::Dfa;
+
+use super::places::{self, Place, Places};
+use super::situation::{Files, Situation};
+use super::{Malformed, Task};
+
+/// A task with what only a file has.
+#[derive(Clone, Debug)]
+pub struct TaskFile {
+    /// The task.
+    pub task: Task,
+    /// The bound on states, where the file tells.
+    pub max_states: Option<usize>,
+    /// The world and what is known beforehand; none where all words are asked about
+    /// and nothing is known.
+    pub situation: Option<Situation>,
+    /// What a scripted teacher has in mind: the whole language, not the part that
+    /// is learned.
+    pub target: Option<Dfa>,
+}
+
+/// One thing that is wrong with a task file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The line, from 1, where it is known.
+    pub line: Option<usize>,
+    /// The column, in characters from 1.
+    pub column: Option<usize>,
+    /// A path such as `symbols[2].name`; empty for the whole.
+    pub path: String,
+    /// What is wrong, and what to do.
+    pub message: String,
+}
+
+/// Why a file is no task: at least one fault, in their order in the file.
+///
+/// As text, a line a fault: `FILE:LINE:COLUMN: path: what is wrong: what to do`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unusable {
+    /// The file.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub faults: Vec<Fault>,
+}
+
+impl fmt::Display for Unusable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, fault) in self.faults.iter().enumerate() {
+            if place > 0 {
+                f.write_str("\n")?;
+            }
+            write!(f, "{}:", self.file.display())?;
+            if let (Some(line), Some(column)) = (fault.line, fault.column) {
+                write!(f, "{line}:{column}:")?;
+            }
+            if !fault.path.is_empty() {
+                write!(f, " {}:", fault.path)?;
+            }
+            write!(f, " {}", fault.message)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Unusable {}
+
+impl TaskFile {
+    /// Reads a task file, JSON if it is called so and TOML otherwise. Files that it
+    /// names lie relative to it.
+    ///
+    /// # Errors
+    ///
+    /// Names all that is wrong with it.
+    pub fn open(path: &Path) -> Result<Self, Unusable> {
+        let unusable = |faults| Unusable {
+            file: path.to_owned(),
+            faults,
+        };
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            unusable(vec![Fault {
+                line: None,
+                column: None,
+                path: String::new(),
+                message: format!("cannot read it as text: {error}"),
+            }])
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let is_json = path
+            .extension()
+            .is_some_and(|extension| extension == "json");
+        let read = if is_json { from_json } else { from_toml };
+        read(&text, folder).map_err(unusable)
+    }
+
+    /// Reads a task as TOML; files that it names lie in this folder.
+    ///
+    /// # Errors
+    ///
+    /// Names all that is wrong with it.
+    pub fn from_toml(text: &str, folder: &Path) -> Result<Self, Vec<Fault>> {
+        from_toml(text, folder)
+    }
+}
+
+fn from_toml(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
+    let (value, places) = places::read(text).map_err(|(place, message)| {
+        let place = place.unwrap_or(Place { line: 1, column: 1 });
+        vec![placed(place, Malformed::new("", message))]
+    })?;
+    read(&value, folder).map_err(|faults| in_order(faults, &places, text))
+}
+
+fn from_json(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
+    let value = serde_json::from_str(text).map_err(|error| {
+        let place = Place {
+            line: error.line(),
+            column: error.column(),
+        };
+        let message = format!("this is not JSON: {error}");
+        vec![placed(place, Malformed::new("", message))]
+    })?;
+    read(&value, folder).map_err(|faults| {
+        let unplaced = |Malformed { path, message }| Fault {
+            line: None,
+            column: None,
+            path,
+            message,
+        };
+        faults.into_iter().map(unplaced).collect()
+    })
+}
+
+fn read(value: &serde_json::Value, folder: &Path) -> Result<TaskFile, Vec<Malformed>> {
+    let read = super::read(value, Files::In(folder))?;
+    Ok(TaskFile {
+        task: read.task,
+        max_states: read.max_states,
+        situation: read.situation,
+        target: read.target,
+    })
+}
+
+fn placed(place: Place, Malformed { path, message }: Malformed) -> Fault {
+    Fault {
+        line: Some(place.line),
+        column: Some(place.column),
+        path,
+        message,
+    }
+}
+
+fn in_order(faults: Vec<Malformed>, places: &Places, text: &str) -> Vec<Fault> {
+    let place = |fault: Malformed| (places.find(&fault.path, text), fault);
+    let mut faults: Vec<_> = faults.into_iter().map(place).collect();
+    faults.sort_by_key(|(place, _)| *place);
+    let placed = faults
+        .into_iter()
+        .map(|(place, fault)| placed(place, fault));
+    placed.collect()
+}

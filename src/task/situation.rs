@@ -1,0 +1,387 @@
+//! Where the behaviours of a task come from, and what is known beforehand: read,
+//! and put together.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use automata::format::{dot, json};
+use automata::{Alphabet, Dfa, Word};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::automaton::{Automaton, over};
+use super::reader::{Faults, Fields, Malformed};
+use super::symbols::{SymbolText, marks};
+use crate::concept::{Prior, PriorError, Template, TemplateError};
+use crate::world::grid::{Grid, GridError, GridMap, Labelling, MOST_STEPS};
+use crate::world::pool::PoolReader;
+use crate::world::{Words, World};
+
+/// Where no world is named, all words up to this length can be shown.
+const LONGEST: usize = 1000;
+/// The steps of a walk through a grid where a task does not tell.
+const STEPS: usize = 40;
+
+/// The world of a task, as it is written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum WorldText {
+    /// All words up to a length.
+    Words {
+        /// The most symbols.
+        longest: usize,
+    },
+    /// A grid.
+    Grid {
+        /// Its rows.
+        map: Vec<String>,
+        /// The most steps of a walk.
+        steps: usize,
+        /// When a tile gives its symbol.
+        labelling: Labelling,
+    },
+    /// Recordings, in a file of JSON lines.
+    Pool {
+        /// The file.
+        recordings: PathBuf,
+    },
+}
+
+/// What is known beforehand, as it is written.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PriorText {
+    /// What holds whatever is learned.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub holds: Vec<Rule>,
+    /// What suffices whatever is learned.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub suffices: Vec<Rule>,
+}
+
+impl PriorText {
+    /// Whether nothing is known.
+    pub fn is_empty(&self) -> bool {
+        self.holds.is_empty() && self.suffices.is_empty()
+    }
+}
+
+/// A rule: by name, or as an automaton.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum Rule {
+    /// As in `avoid X`.
+    Named(String),
+    /// An automaton.
+    Automaton(Automaton),
+}
+
+impl Rule {
+    /// The words that keep it.
+    pub(super) fn dfa(&self, alphabet: &Alphabet) -> Result<Dfa, Malformed> {
+        let fault = |error: &dyn std::fmt::Display| Malformed::new("prior", error.to_string());
+        match self {
+            Self::Named(text) => {
+                let template = Template::parse(text, alphabet).map_err(|error| fault(&error))?;
+                Ok(template.dfa(alphabet))
+            }
+            Self::Automaton(automaton) => automaton.read(alphabet).map_err(|error| fault(&error)),
+        }
+    }
+}
+
+/// Where behaviours come from, and what is known beforehand.
+#[derive(Clone, Debug)]
+pub struct Situation {
+    /// What can be shown.
+    pub world: Arc<World>,
+    /// What is never asked.
+    pub prior: Prior,
+}
+
+impl Situation {
+    /// Checks that the word can be shown, and that a label does not contradict what
+    /// is known beforehand.
+    pub(super) fn check(
+        &self,
+        word: &Word,
+        label: Option<bool>,
+        path: &str,
+    ) -> Result<(), Malformed> {
+        if !self.world.is_feasible(word) {
+            return Err(Malformed::new(
+                path,
+                "this cannot happen in the world of the task: leave it out, or change the world",
+            ));
+        }
+        match (self.prior.settled(word), label) {
+            (Some(settled), Some(label)) if settled != label => Err(Malformed::new(
+                path,
+                format!(
+                    "this is {} and what is known beforehand (`prior`) says the opposite: correct one of them",
+                    if label {
+                        "acceptable"
+                    } else {
+                        "not acceptable"
+                    }
+                ),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Which files a task may name.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Files<'a> {
+    /// None: the task came over the network.
+    None,
+    /// Those by a path that is relative to this folder.
+    In(&'a Path),
+}
+
+impl Files<'_> {
+    /// The path of a file that is named at `path` in the task.
+    fn find(self, named: &str, path: &str) -> Result<PathBuf, Malformed> {
+        match self {
+            Files::In(folder) => Ok(folder.join(named)),
+            Files::None => Err(Malformed::new(
+                path,
+                format!("`{named}`: a session reads no files, give the content itself"),
+            )),
+        }
+    }
+}
+
+/// The rule at `path`, with its automaton.
+pub(super) fn read_rule(
+    value: &Value,
+    path: &str,
+    alphabet: &Alphabet,
+    files: Files<'_>,
+) -> Result<(Rule, Dfa), Malformed> {
+    let fault = |error: &dyn std::fmt::Display| Malformed::new(path, error.to_string());
+    if let Some(table) = value.as_object() {
+        let dfa = Automaton::inline(table, alphabet).map_err(|error| fault(&error))?;
+        return Ok((Rule::Automaton(Automaton::of(&dfa)), dfa));
+    }
+    let Some(text) = value.as_str() else {
+        return Err(fault(&"give a rule as a string, as in `avoid X`"));
+    };
+    match Template::parse(text, alphabet) {
+        Ok(template) => Ok((Rule::Named(text.to_owned()), template.dfa(alphabet))),
+        Err(error @ TemplateError::Form(_)) => {
+            let named = Path::new(text);
+            let (Some(extension), Files::In(_)) = (named.extension(), files) else {
+                return Err(fault(&error));
+            };
+            let file = files.find(text, path)?;
+            let content = std::fs::read_to_string(&file)
+                .map_err(|error| fault(&format!("{}: cannot read it: {error}", file.display())))?;
+            let dfa = if extension == "dot" || extension == "gv" {
+                dot::read(&content).map_err(|error| error.to_string())
+            } else {
+                (json::read(&content).map(|document| document.dfa)).map_err(|e| e.to_string())
+            };
+            let dfa = dfa.map_err(|error| fault(&format!("{}: {error}", file.display())))?;
+            let dfa = over(dfa, alphabet).map_err(|error| fault(&error))?;
+            Ok((Rule::Automaton(Automaton::of(&dfa)), dfa))
+        }
+        Err(error) => Err(fault(&error)),
+    }
+}
+
+/// What stands under `prior`.
+pub(super) fn read_prior(
+    fields: &Fields<'_>,
+    alphabet: &Alphabet,
+    files: Files<'_>,
+    faults: &mut Faults,
+) -> Option<(PriorText, Prior)> {
+    let Some(value) = fields.get("prior") else {
+        return Some((PriorText::default(), Prior::none(alphabet)));
+    };
+    let fields = faults.keep(Fields::of(value, "prior"))?;
+    let before = faults.0.len();
+    faults.0.extend(fields.unknown(&["holds", "suffices"]));
+    let mut rules = |key: &str| -> (Vec<Rule>, Vec<Dfa>) {
+        let list = faults.keep(fields.list(key)).unwrap_or_default();
+        let read = list.iter().enumerate().filter_map(|(i, rule)| {
+            let path = format!("{}[{i}]", fields.path_of(key));
+            faults.keep(read_rule(rule, &path, alphabet, files))
+        });
+        read.unzip()
+    };
+    let (holds, holding) = rules("holds");
+    let (suffices, sufficing) = rules("suffices");
+    if faults.0.len() > before {
+        return None;
+    }
+    let prior = Prior::new(alphabet, holding, sufficing)
+        .map_err(|error| Malformed::new("prior", error.to_string()));
+    Some((PriorText { holds, suffices }, faults.keep(prior)?))
+}
+
+/// What stands under `world`; none, and a fault is kept, if it is no world.
+pub(super) fn read_world(
+    value: &Value,
+    files: Files<'_>,
+    faults: &mut Faults,
+) -> Option<WorldText> {
+    let fields = faults.keep(Fields::of(value, "world"))?;
+    let kind = faults.keep(fields.text("kind", 60))?.unwrap_or_default();
+    let world = match kind.as_str() {
+        "words" => {
+            faults.0.extend(fields.unknown(&["kind", "longest"]));
+            let longest = faults.keep(fields.whole("longest", 1, LONGEST))?;
+            WorldText::Words {
+                longest: longest.unwrap_or(LONGEST),
+            }
+        }
+        "grid" => {
+            let keys = ["kind", "map", "steps", "labelling"];
+            faults.0.extend(fields.unknown(&keys));
+            let steps = faults.keep(fields.whole("steps", 1, MOST_STEPS));
+            let labelling = faults.keep(read_labelling(&fields));
+            WorldText::Grid {
+                map: faults.keep(read_map(&fields))?,
+                steps: steps?.unwrap_or(STEPS),
+                labelling: labelling?,
+            }
+        }
+        "pool" => {
+            faults.0.extend(fields.unknown(&["kind", "recordings"]));
+            WorldText::Pool {
+                recordings: faults.keep(read_recordings(&fields, files))?,
+            }
+        }
+        _ => {
+            faults.0.push(Malformed::new(
+                fields.path_of("kind"),
+                format!("`{kind}` is no kind of world: give `words`, `grid` or `pool`"),
+            ));
+            return None;
+        }
+    };
+    Some(world)
+}
+
+fn read_map(fields: &Fields<'_>) -> Result<Vec<String>, Malformed> {
+    let fault = |path| {
+        Malformed::new(
+            path,
+            "draw the grid as text, one line a row: `S` a start, `#` a wall, `.` an empty cell, and the letters of symbols",
+        )
+    };
+    let path = fields.path_of("map");
+    match fields.get("map") {
+        Some(Value::String(text)) => Ok(text.lines().map(str::to_owned).collect()),
+        Some(Value::Array(rows)) => {
+            let row = |(i, row): (usize, &Value)| match row.as_str() {
+                Some(row) => Ok(row.to_owned()),
+                None => Err(fault(format!("{path}[{i}]"))),
+            };
+            rows.iter().enumerate().map(row).collect()
+        }
+        _ => Err(fault(path)),
+    }
+}
+
+fn read_labelling(fields: &Fields<'_>) -> Result<Labelling, Malformed> {
+    match fields.text("labelling", 60)?.as_deref() {
+        None | Some("entry") => Ok(Labelling::Entry),
+        Some("every-step") => Ok(Labelling::EveryStep),
+        Some(other) => Err(Malformed::new(
+            fields.path_of("labelling"),
+            format!("`{other}` is no labelling: give `entry` or `every-step`"),
+        )),
+    }
+}
+
+fn read_recordings(fields: &Fields<'_>, files: Files<'_>) -> Result<PathBuf, Malformed> {
+    let path = fields.path_of("recordings");
+    match fields.text("recordings", 4000)? {
+        Some(named) => files.find(&named, &path),
+        None => Err(Malformed::new(
+            path,
+            "name the file of the recordings, one JSON object a line",
+        )),
+    }
+}
+
+/// The world that is written; without one, all words.
+pub(super) fn build_world(
+    text: Option<&WorldText>,
+    symbols: &[SymbolText],
+    alphabet: &Alphabet,
+) -> Result<World, Malformed> {
+    let alphabet = alphabet.clone();
+    Ok(match text {
+        None => World::Words(Words::new(alphabet, LONGEST)),
+        Some(WorldText::Words { longest }) => World::Words(Words::new(alphabet, *longest)),
+        Some(WorldText::Grid {
+            map,
+            steps,
+            labelling,
+        }) => World::Grid(build_grid(map, symbols, alphabet, *labelling, *steps)?),
+        Some(WorldText::Pool { recordings }) => {
+            let fault = |error: &dyn std::fmt::Display| {
+                let message = format!("{}: {error}", recordings.display());
+                Malformed::new("world.recordings", message)
+            };
+            let file = File::open(recordings).map_err(|error| fault(&error))?;
+            let pool = PoolReader::read(alphabet, file).map_err(|error| fault(&error))?;
+            World::Pool(pool)
+        }
+    })
+}
+
+fn build_grid(
+    map: &[String],
+    symbols: &[SymbolText],
+    alphabet: Alphabet,
+    labelling: Labelling,
+    steps: usize,
+) -> Result<Grid, Malformed> {
+    let map = GridMap {
+        rows: map.iter().map(String::as_str).collect(),
+        marks: marks(symbols).collect(),
+    };
+    map.grid(alphabet, labelling, steps).map_err(|error| {
+        let path = match &error {
+            GridError::NoSymbol { at, .. }
+            | GridError::Unreachable { at, .. }
+            | GridError::Foreign { at, .. }
+            | GridError::BadStart(at) => format!("world.map[{}][{}]", at.row, at.column),
+            GridError::Ragged { row, .. } => format!("world.map[{}]", row - 1),
+            GridError::Steps(_) => "world.steps".to_owned(),
+            GridError::Mark(mark) => {
+                let bearer = symbols.iter().rposition(|s| s.mark() == Some(*mark));
+                bearer.map_or_else(|| "symbols".to_owned(), |i| format!("symbols[{i}]"))
+            }
+            GridError::Empty | GridError::TooLarge { .. } | GridError::NoStart => {
+                "world.map".to_owned()
+            }
+        };
+        let hint = match &error {
+            GridError::NoStart => " with `S`",
+            GridError::Mark(_) => " by `letter`; `#`, `.` and `S` are taken",
+            _ => "",
+        };
+        Malformed::new(path, format!("{error}{hint}"))
+    })
+}
+
+/// Both together.
+pub(super) fn build(world: World, prior: Prior, path: &str) -> Result<Situation, Malformed> {
+    if !world.has_word(prior.open()) {
+        return Err(Malformed::new(
+            path,
+            PriorError::NothingOpenHere.to_string(),
+        ));
+    }
+    Ok(Situation {
+        world: Arc::new(world),
+        prior,
+    })
+}
