@@ -224,3 +224,32 @@ fn rivals_ask_what_they_are_known_to_ask() {
     let arguments = format!("--targets 2 --trials 2 --strategy thesis --aalpy {python}");
     check("random", &arguments, 0);
 }
+
+/// All concepts end learned, and the page has the exchange of Fig. 5.3.
+#[test]
+fn monotone_predicates() {
+    let arguments = "--targets 6 --trials 1 --costs 1,4,none";
+    let (rows, page) = check("monotone", arguments, 0);
+    assert_eq!(
+        rows.len(),
+        1 + 6 * 5 * 3,
+        "six concepts, five contenders, three costs"
+    );
+    assert_eq!(
+        rows[0][..3],
+        ["target", "size", "dimensions"].map(String::from)
+    );
+    let column = |name: &str| rows[0].iter().position(|column| column == name).unwrap();
+    for row in &rows[1..] {
+        assert_eq!(row[column("equivalent")], "true", "{row:?}");
+        if row[column("comparison_cost")] == "inf" || row[column("contender")] == "membership" {
+            assert_eq!(row[column("comparison")], "0", "{row:?}");
+        }
+    }
+    assert!(page.contains("removing one membership query adds 2.4 queries on average"));
+    assert!(page.contains("| C = 1 to 4 |"));
+    let folder = tempfile::tempdir().unwrap();
+    let (status, said) = bench(&folder, "monotone --aalpy python3");
+    assert_eq!(status, Some(2));
+    assert!(said.contains("these rivals learn automata"), "{said}");
+}

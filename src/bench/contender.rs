@@ -25,7 +25,7 @@ pub const CONTENDERS: &[Contender] = &[
     Contender {
         key: "bayes",
         name: "bayes",
-        about: "a posterior over automata, and the question worth most for its cost; an equivalence query costs it 4C",
+        about: "a posterior over concepts, and the question worth most for its cost; an equivalence query costs it 4C",
         clean: true,
         noisy: true,
         set: |config| config.strategy = Strategy::Bayes,

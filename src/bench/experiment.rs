@@ -2,7 +2,8 @@
 
 use super::case::Case;
 use super::contender::{CONTENDERS, Contender};
-use crate::oracle::{Counterexamples, Order, Shape, Target, TargetError};
+use super::subject::Subject;
+use crate::oracle::{Counterexamples, MonotoneTarget, Order, Shape, Target, TargetError};
 
 /// An experiment of the suite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,11 +22,17 @@ pub enum Experiment {
     Random,
     /// Targets drawn at random that look like tasks.
     Tasks,
+    /// Monotone predicates: Fig. 5.3, right.
+    Monotone,
 }
 
 /// The costs of a membership query where a comparison costs 1; none: comparisons
 /// are never asked.
 pub const COSTS: [Option<u32>; 5] = [Some(1), Some(2), Some(4), Some(8), None];
+
+/// The grid of [`Experiment::Monotone`].
+const DIMENSIONS: usize = 2;
+const POINTS: usize = 10;
 
 /// The cost of a membership query in [`Experiment::Noise`].
 const NOISE_COST: u32 = 4;
@@ -45,6 +52,7 @@ impl Experiment {
             Self::Noise => "noise",
             Self::Random => "random",
             Self::Tasks => "tasks",
+            Self::Monotone => "monotone",
         }
     }
 
@@ -58,6 +66,7 @@ impl Experiment {
             Self::Noise => "Wrong answers (Fig. 5.5)",
             Self::Random => "Targets drawn at random",
             Self::Tasks => "Targets drawn at random in the shape of tasks",
+            Self::Monotone => "Monotone predicates (Fig. 5.3, right)",
         }
     }
 
@@ -82,10 +91,18 @@ impl Experiment {
             Self::Tasks => {
                 "The targets are minimal automata with 3 to 8 states over 3 or 4 letters in the shape of tasks: two thirds of the edges stay where they are, and one state is a rejecting sink; nothing is known at the start. `memrep learn --target task:N` teaches the one of number N."
             }
+            Self::Monotone => {
+                "The targets are parameters drawn evenly from the uniform grid with 10 points per axis in two dimensions; the class has the grids with 1 to 10 points per axis, a coarser one before a finer one, and nothing is known at the start. What is asked about are points, acceptable if they are at most the parameter in both dimensions (Example 9). The dissertation has two dimensions and 100 concepts and does not tell its grids. `memrep learn --target monotone:2:10:N` teaches the one of number N."
+            }
         }
     }
 
-    /// The shape of its targets, where they are drawn.
+    /// Whether its targets are drawn.
+    pub fn is_drawn(self) -> bool {
+        self == Self::Monotone || self.drawn().is_some()
+    }
+
+    /// The shape of its targets, where they are automata that are drawn.
     pub fn drawn(self) -> Option<Shape> {
         match self {
             Self::Random => Some(Shape::Random),
@@ -99,14 +116,21 @@ impl Experiment {
     /// # Errors
     ///
     /// If a target cannot be made; no target of the suite does that.
-    pub fn targets(self, drawn: u64) -> Result<Vec<Case>, TargetError> {
+    pub fn targets(self, drawn: u64) -> Result<Vec<Subject>, TargetError> {
         if let Some(shape) = self.drawn() {
             return Ok((0..drawn).map(|n| Target::drawn(shape, n).into()).collect());
+        }
+        if self == Self::Monotone {
+            let draw = |n| MonotoneTarget::draw(DIMENSIONS, POINTS, n).into();
+            return Ok((0..drawn).map(draw).collect());
         }
         let (family, numbers) = match self {
             Self::Modulo => ("modulo", &[5, 10, 20, 40][..]),
             Self::Zeros => ("zeros", &[1, 2, 3, 4][..]),
-            Self::Robot => return Case::robot(),
+            Self::Robot => {
+                let cases = Case::robot()?;
+                return Ok(cases.into_iter().map(Subject::from).collect());
+            }
             _ => ("tomita", &[1, 2, 3, 4, 5, 6, 7][..]),
         };
         numbers
@@ -118,7 +142,7 @@ impl Experiment {
     /// The teacher's preference order, unless another is asked for.
     pub fn order(self) -> Order {
         match self {
-            Self::Robot => Order::Random,
+            Self::Robot | Self::Monotone => Order::Random,
             _ => Order::Ordered,
         }
     }
@@ -152,16 +176,21 @@ impl Experiment {
     /// The runs of a cell where nothing else is asked for.
     pub fn trials(self, quick: bool) -> u64 {
         match (self, quick) {
-            (Self::Random | Self::Tasks | Self::Noise, true) => 1,
+            (Self::Random | Self::Tasks | Self::Noise | Self::Monotone, true) => 1,
             (_, true) => 2,
-            (Self::Random | Self::Tasks, false) => 5,
+            (Self::Random | Self::Tasks | Self::Monotone, false) => 5,
             (_, false) => 20,
         }
     }
 
     /// The number of drawn targets where nothing else is asked for.
-    pub fn drawn_targets(quick: bool) -> u64 {
-        if quick { 3 } else { 30 }
+    pub fn drawn_targets(self, quick: bool) -> u64 {
+        match (self, quick) {
+            (Self::Monotone, true) => 20,
+            (Self::Monotone, false) => 100,
+            (_, true) => 3,
+            (_, false) => 30,
+        }
     }
 }
 
@@ -171,7 +200,7 @@ pub struct Plan {
     /// Which experiment.
     pub experiment: Experiment,
     /// The targets.
-    pub targets: Vec<Case>,
+    pub targets: Vec<Subject>,
     /// Who takes part.
     pub contenders: Vec<&'static Contender>,
     /// The costs of a membership query; none: comparisons are never asked.

@@ -17,12 +17,15 @@ const MOST_PANELS: usize = 8;
 /// If it cannot be drawn.
 pub fn figure(results: &Results) -> Result<String, ChartError> {
     let mut groups = results.groups();
-    if results.plan.experiment.drawn().is_some() || groups.len() > MOST_PANELS {
+    if results.plan.experiment.is_drawn() || groups.len() > MOST_PANELS {
         let targets = results.plan.targets.len();
         groups = vec![Group {
             name: format!("all {targets} targets"),
             ..results.everything()
         }];
+    }
+    if results.plan.experiment == Experiment::Monotone {
+        return chart::svg(&kinds(results, &results.everything()));
     }
     let noise = results.plan.experiment == Experiment::Noise;
     let mut panels: Vec<Panel> = groups
@@ -72,6 +75,26 @@ fn by_cost(
         series: results.columns().iter().map(series).collect(),
         line: None,
     }
+}
+
+/// A panel a kind of question, as the parts of Fig. 5.3's bars, and the ratios.
+fn kinds(results: &Results, group: &Group) -> Vec<Panel> {
+    let kinds: [(&str, Measure); 3] = [
+        ("membership queries", |run| f64::from(run.counts.membership)),
+        ("comparisons", |run| f64::from(run.counts.comparison)),
+        ("equivalence queries", |run| {
+            f64::from(run.counts.equivalence)
+        }),
+    ];
+    let panel = |(name, measure): (&str, Measure)| {
+        by_cost(results, name, "mean ± deviation", |key, cost| {
+            mean(&results.cell(group, key, cost, 0), measure)
+        })
+    };
+    let mut panels: Vec<Panel> = kinds.into_iter().map(panel).collect();
+    panels.push(costs(results, group));
+    panels.push(ratios(results));
+    panels
 }
 
 fn costs(results: &Results, group: &Group) -> Panel {

@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::contender::{Contender, RIVALS};
+use super::experiment::Experiment;
 use super::results::{Cell, Measure, Results};
 use crate::oracle::{Counterexamples, Order};
 
@@ -58,6 +59,9 @@ pub(super) fn intro(results: &Results, command: &str, findings: &str) -> String 
         experiment.title()
     );
     let order = match plan.order {
+        Order::Ordered if experiment == Experiment::Monotone => {
+            "prefers points that are deeper inside, or less far outside (Examples 3 and 5)"
+        }
         Order::Ordered => {
             "prefers words by the order that the dissertation describes for Tomita's languages"
         }
@@ -66,6 +70,9 @@ pub(super) fn intro(results: &Results, command: &str, findings: &str) -> String 
         }
     };
     let counterexamples = match plan.counterexamples {
+        Counterexamples::Shortest if experiment == Experiment::Monotone => {
+            "its counterexamples are simplest"
+        }
         Counterexamples::Shortest => "its counterexamples are shortest",
         Counterexamples::Random => "its counterexamples are random",
     };

@@ -60,12 +60,14 @@ fn findings(results: &Results) -> String {
     });
     let measured = match first {
         Some(key) if !ratios.is_empty() => format!(
-            "The all-in cost of `{}` over that of `{}` in the same run, as a geometric mean over {} with its 95 % interval, is {}.",
+            "The all-in cost of `{}` over that of `{}` in the same run, {} with its 95 % interval, is {}.",
             name(key),
             name(BASE),
             match results.plan.targets.len() {
-                1 => "the one target".to_owned(),
-                targets => format!("{targets} targets"),
+                targets if results.plan.experiment == Experiment::Monotone =>
+                    format!("as the ratio of means over {targets} concepts"),
+                1 => "as a geometric mean over the one target".to_owned(),
+                targets => format!("as a geometric mean over {targets} targets"),
             },
             ratios.join(", ")
         ),
@@ -89,11 +91,20 @@ fn interval(ratio: super::Ratio) -> String {
 
 /// How everybody stands against one, by both costs.
 fn against(results: &Results, base: &str) -> String {
-    let drawn = results.plan.experiment.drawn().is_some();
+    let (ratio, drawn) = match results.plan.experiment {
+        Experiment::Monotone => ("Ratios of the mean costs over all concepts", "runs"),
+        experiment => (
+            "Geometric means over the targets on which both were run of the ratio of mean costs",
+            if experiment.is_drawn() {
+                "targets and runs"
+            } else {
+                "runs"
+            },
+        ),
+    };
     let mut section = format!(
-        "\n## Costs over those of `{}`\n\nGeometric means over the targets on which both were run of the ratio of mean costs; in brackets the 95 % interval of a bootstrap that draws {} anew. `–`: comparisons are never asked.\n",
+        "\n## Costs over those of `{}`\n\n{ratio}; in brackets the 95 % interval of a bootstrap that draws {drawn} anew. `–`: comparisons are never asked.\n",
         name(base),
-        if drawn { "targets and runs" } else { "runs" }
     );
     let costs: [(&str, Measure); 2] = [
         (

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::case::Case;
 use super::contender::{BASE, RIVALS};
-use super::experiment::Plan;
+use super::experiment::{Experiment, Plan};
 use super::run::Run;
+use super::subject::Subject;
 use super::summary::{self, Pairs, Ratio, Spread, Uncertainty};
 
 /// A plan and all its runs.
@@ -41,23 +41,26 @@ impl Results {
     /// Every target for itself; those that were drawn by their number of states.
     pub fn groups(&self) -> Vec<Group> {
         let targets = &self.plan.targets;
-        if self.plan.experiment.drawn().is_none() {
-            let group = |(place, target): (usize, &Case)| Group {
+        if self.plan.experiment == Experiment::Monotone {
+            return vec![Group {
+                name: format!("all {} concepts", targets.len()),
+                ..self.everything()
+            }];
+        }
+        if !self.plan.experiment.is_drawn() {
+            let group = |(place, target): (usize, &Subject)| Group {
                 name: target.name().to_owned(),
                 targets: vec![place],
             };
             return targets.iter().enumerate().map(group).collect();
         }
-        let mut sizes: Vec<usize> = targets
-            .iter()
-            .map(|case| case.target().dfa().size())
-            .collect();
+        let mut sizes: Vec<usize> = targets.iter().map(Subject::size).collect();
         sizes.sort_unstable();
         sizes.dedup();
         let group = |size| Group {
             name: format!("{size} states"),
             targets: (0..targets.len())
-                .filter(|&place| targets[place].target().dfa().size() == size)
+                .filter(|&place| targets[place].size() == size)
                 .collect(),
         };
         sizes.into_iter().map(group).collect()
@@ -100,23 +103,31 @@ impl Results {
         cost: Option<u32>,
         measure: Measure,
     ) -> Option<Ratio> {
-        let targets: Vec<Pairs> = (0..self.plan.targets.len())
-            .map(|target| {
-                let group = Group {
-                    name: String::new(),
-                    targets: vec![target],
-                };
-                let ours = self.cell(&group, contender, cost, 0);
-                let theirs = self.cell(&group, base, cost, 0);
+        let single = |target| Group {
+            name: String::new(),
+            targets: vec![target],
+        };
+        // Some concepts of a monotone family are learned by equivalence queries
+        // alone, and over nothing there is no ratio: all of them are one target.
+        let groups = match self.plan.experiment {
+            Experiment::Monotone => vec![self.everything()],
+            _ => (0..self.plan.targets.len()).map(single).collect(),
+        };
+        let targets: Vec<Pairs> = groups
+            .iter()
+            .map(|group| {
+                let ours = self.cell(group, contender, cost, 0);
+                let theirs = self.cell(group, base, cost, 0);
                 // The runs of a cell are in the order of their seeds.
                 let costs = |cell: &Cell<'_>| cell.values(measure);
                 costs(&ours).into_iter().zip(costs(&theirs)).collect()
             })
             .filter(|pairs: &Pairs| !pairs.is_empty())
             .collect();
-        let uncertainty = match self.plan.experiment.drawn() {
-            Some(_) => Uncertainty::TargetsAndRuns,
-            None => Uncertainty::Runs,
+        let uncertainty = if groups.len() > 1 && self.plan.experiment.is_drawn() {
+            Uncertainty::TargetsAndRuns
+        } else {
+            Uncertainty::Runs
         };
         summary::ratio(&targets, uncertainty)
     }

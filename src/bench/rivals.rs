@@ -52,7 +52,9 @@ struct Line {
 ///
 /// If Python or the library is missing, or fails.
 pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
-    let cases: Vec<(usize, &Case)> = (plan.targets.iter().enumerate())
+    let cases = plan.targets.iter().enumerate();
+    let cases: Vec<(usize, &Case)> = cases
+        .filter_map(|(place, subject)| Some((place, subject.language()?)))
         .filter(|(_, case)| case.setting().is_none_or(Setting::is_boundless))
         .collect();
     let task = json!({

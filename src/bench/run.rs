@@ -13,11 +13,12 @@ use super::case::Setting;
 use super::clock::thread_cpu;
 use super::contender::Contender;
 use super::experiment::Plan;
+use super::subject::Subject;
 use super::trial::{Report, TrialError, teach};
-use crate::concept::{DfaClass, PriorError};
+use crate::concept::{DfaClass, Point, PriorError};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Counts, EQUIVALENCE_COST, Learner, Question};
-use crate::oracle::{ScriptedTeacher, SituatedTeacher, Target, TeacherSettings};
+use crate::oracle::{MonotoneTarget, ScriptedTeacher, SituatedTeacher, Target, TeacherSettings};
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -161,8 +162,6 @@ pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError
 }
 
 fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
-    let case = &plan.targets[job.target];
-    let target = case.target();
     let noisy = plan.errors.iter().any(|&errors| errors > 0);
     let settings = Settings {
         engine: EngineChoice::Auto,
@@ -175,17 +174,31 @@ fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
         error_rate: f64::from(job.errors) / 100.0,
         seed: job.seed,
     };
-    let (report, equivalent) = match case.setting() {
-        None => alone(target, config, settings, teacher),
-        Some(setting) => situated(target, setting, config, settings, teacher),
-    }
-    .map_err(|source| RunError {
-        target: case.name().to_owned(),
+    let subject = &plan.targets[job.target];
+    let run = match subject {
+        Subject::Language(case) => {
+            let report = match case.setting() {
+                None => alone(case.target(), config, settings, teacher),
+                Some(setting) => situated(case.target(), setting, config, settings, teacher),
+            };
+            report.map(|report| done(job, report))
+        }
+        Subject::Monotone(target) => {
+            let report = monotone(target, config, teacher);
+            report.map(|report| done(job, report))
+        }
+    };
+    run.map_err(|source| RunError {
+        target: subject.name().to_owned(),
         contender: job.contender.key,
         seed: job.seed,
         source: Box::new(source),
-    })?;
-    Ok(Run {
+    })
+}
+
+/// The run that came to this.
+fn done<C>(job: &Job, (report, equivalent): (Report<C>, bool)) -> Run {
+    Run {
         target: job.target,
         contender: job.contender.key,
         cost: job.cost,
@@ -196,7 +209,25 @@ fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
         dropped: report.dropped,
         hurried: report.hurried,
         question_times: report.question_times,
-    })
+    }
+}
+
+/// A run about a monotone predicate, and whether it ended with the same.
+fn monotone(
+    target: &MonotoneTarget,
+    config: Config,
+    teacher: TeacherSettings,
+) -> Result<(Report<Point>, bool), Fault> {
+    let mut learner = Learner::new(target.class(), config, Vec::new());
+    let report = teach(
+        &mut learner,
+        &mut target.teacher(teacher),
+        MAX_QUESTIONS,
+        thread_cpu,
+        |_| {},
+    )?;
+    let equivalent = report.learned.as_ref() == Some(target.parameter());
+    Ok((report, equivalent))
 }
 
 /// A run in which all words can be shown, and whether it ended equivalent.

@@ -1,6 +1,7 @@
 //! The runs as a table for programs: one line a run, and no times in it, so that
 //! the same seeds give the same bytes.
 
+use super::experiment::Experiment;
 use super::results::Results;
 
 const HEADER: [&str; 16] = [
@@ -29,14 +30,17 @@ const HEADER: [&str; 16] = [
 /// If the memory does not suffice.
 pub fn csv(results: &Results) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(HEADER)?;
+    let mut header = HEADER;
+    if results.plan.experiment == Experiment::Monotone {
+        [header[1], header[2]] = ["size", "dimensions"];
+    }
+    writer.write_record(header)?;
     for run in &results.runs {
-        let case = &results.plan.targets[run.target];
-        let dfa = case.target().dfa();
+        let target = &results.plan.targets[run.target];
         let record = [
-            case.name().to_owned(),
-            dfa.size().to_string(),
-            dfa.alphabet().len().to_string(),
+            target.name().to_owned(),
+            target.size().to_string(),
+            target.width().to_string(),
             run.contender.to_owned(),
             run.cost.unwrap_or(1).to_string(),
             if run.cost.is_some() { "1" } else { "inf" }.to_owned(),

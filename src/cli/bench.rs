@@ -36,6 +36,8 @@ enum Command {
     Random(suite::DrawnOptions),
     /// Targets drawn at random in the shape of tasks.
     Tasks(suite::DrawnOptions),
+    /// Monotone predicates (Fig. 5.3, right).
+    Monotone(suite::DrawnOptions),
     /// Smallest automata for random samples, beside dfa-identify: identify.md.
     Identify(passive::Args),
 }
@@ -50,6 +52,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Command::Noise(options) => suite::run_noise(options),
         Command::Random(options) => suite::run_drawn(Experiment::Random, options),
         Command::Tasks(options) => suite::run_drawn(Experiment::Tasks, options),
+        Command::Monotone(options) => suite::run_drawn(Experiment::Monotone, options),
         Command::Identify(args) => passive::run(args),
     }
 }

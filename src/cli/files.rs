@@ -154,8 +154,8 @@ pub(crate) fn read_sample(
     Ok((sample, lines))
 }
 
-/// The text of a file.
-fn text(path: &Path) -> anyhow::Result<String> {
+/// The text of a file; of the standard input, if the path is `-`.
+pub(crate) fn text(path: &Path) -> anyhow::Result<String> {
     let mut bytes = Vec::new();
     if path == Path::new("-") {
         std::io::stdin().lock().read_to_end(&mut bytes)

@@ -160,7 +160,7 @@ fn warn_of_order(sample: &automata::Sample, lines: &[ItemLine]) -> anyhow::Resul
     };
     eprintln!(
         "warning: no order agrees with these lines. {} What is found treats them all alike.",
-        output::because(conflict.cause)
+        output::because(conflict.cause, &output::AUTOMATA)
     );
     for answer in &conflict.answers {
         let line = &lines[answer.0 as usize];
@@ -279,7 +279,7 @@ fn name_lines(contradiction: &Contradiction, lines: &[ItemLine]) -> anyhow::Resu
         cause @ (Cause::Order | Cause::Equality | Cause::MemRep) => {
             format!(
                 "No automaton of any size: these lines contradict each other. {}",
-                output::because(cause)
+                output::because(cause, &output::AUTOMATA)
             )
         }
         Cause::States { bound } => format!(

@@ -2,35 +2,36 @@
 //! took.
 
 mod check;
+mod classes;
+mod converse;
 mod doubts;
 mod situation;
 mod summary;
+mod teller;
 mod trace;
 mod values;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
 
 use anyhow::Context as _;
+use automata::Dfa;
 use automata::format::json::{Document, Provenance};
-use automata::{Alphabet, Dfa, Word};
-use indicatif::ProgressBar;
 
+use self::converse::converse;
+use self::teller::Words;
 use self::values::Promise;
 use super::files::{self, Content, Format};
-use super::output::{Output, counted};
-use crate::bench::{Report, process_cpu, teach};
-use crate::concept::{ConceptClass, DfaClass, Situated};
+use super::output::Output;
+use crate::bench::Report;
+use crate::concept::{DfaClass, Situated};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
-    Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, Teacher,
-    TeacherSettings,
+    Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, TeacherSettings,
 };
 use crate::task::{Situation, TaskFile};
-use crate::world::World;
 use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
@@ -47,6 +48,8 @@ const BUDGET: u64 = 2_000_000;
   memrep learn --target robot --prior ry.json --grid room.txt --steps 30
   memrep learn --target examples/tasks/robot-recharge.toml --trace
   memrep learn --target task.json --pool recordings.jsonl --no-empty-word
+  memrep learn --target monotone:2:10 --trace
+  memrep learn --target finite:manners.csv#polite --strategy thesis
   memrep learn --target tomita:5 --comparison-cost inf --format json
     {\"target\":\"tomita:5\",\"strategy\":\"bayes\",\"seed\":0,\"equivalent\":true,\"states\":4,…}
 
@@ -57,6 +60,19 @@ of the dissertation), random:N and task:N (drawn at random, as in `memrep bench
 random` and `tasks`), or the path of an automaton file (json or dot) or of a task
 file (toml, or the same in json). A task file tells the world, what is known
 beforehand, examples, costs and strategy as well; options override what it tells.
+
+Targets of other classes, about whose options on words nothing can be said:
+monotone:D:TICKS (behaviours are points with coordinates from 0 to 1, acceptable
+if at most the target in each of D = 1 to 4 dimensions; the target is drawn by the
+seed from the grid with TICKS points per axis, or as number N: monotone:D:TICKS:N),
+finite:FILE (a table of comma-separated values: a line with the names of concepts,
+perhaps a line `size`, and a line a behaviour with 1 under the concepts that
+contain it and else 0; the target is drawn by the seed, or named: finite:FILE#NAME),
+linear:FILE (JSON with `weights`, `threshold` and `behaviours`, each a `name` and
+`features`, a list of numbers from 0 to 1 for every step: acceptable is what is
+above the threshold in sum; rewards are looked for on grids with up to `finest`
+points per axis). See examples/manners.csv and examples/drives.json. For these,
+`size` stands in place of `states`, and --trace has `atom` in place of `word`.
 
 With --conformance, what the teacher agreed with is believed only after random
 words were judged: the line `checked` says how far one may trust it. Of a teacher that
@@ -157,8 +173,8 @@ pub(crate) struct Args {
     /// Print every question with its answer.
     #[arg(long)]
     trace: bool,
-    /// Write the learned automaton, with what is known beforehand, to this file
-    /// (`-`: the standard output).
+    /// Write the learned automaton, with what is known beforehand, or the learned
+    /// concept of another class as JSON, to this file (`-`: the standard output).
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
     /// Write only the part that was learned beside what is known beforehand.
@@ -171,26 +187,22 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(status) = classes::run(args)? {
+        return Ok(status);
+    }
     let (target, file) = target(args)?;
     let task = file.as_ref().map(|file| &file.task);
     let told = task.map(|task| task.costs).unwrap_or_default();
     let membership_cost = args.membership_cost.or(told.membership).unwrap_or(4.0);
     let strategy = args.strategy.or(task.and_then(|task| task.strategy));
     let strategy = strategy.unwrap_or(Strategy::Bayes);
-    if args.robust && strategy != Strategy::Bayes {
-        anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
-    }
+    check_promises(args, strategy)?;
     let nothing_known = args.prior.is_empty()
         && args.suffices.is_empty()
         && task.is_none_or(|task| task.prior.is_empty());
     if args.save_part.is_some() && nothing_known {
         anyhow::bail!(
             "without `--prior` or `--suffices` all is learned: use `--save` in place of `--save-part`"
-        );
-    }
-    if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
-        anyhow::bail!(
-            "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
         );
     }
     let alphabet = target.dfa().alphabet().clone();
@@ -210,18 +222,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         membership_cost,
         comparison_cost: args.comparison_cost.or(told.comparison).unwrap_or(1.0),
         equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
-        shortest_counterexamples: args.promise.is_some(),
-        robust: args.robust,
-        conformance: args.conformance,
-        seed: args.seed,
-        budget: BUDGET,
+        ..config(args)
     };
-    let teacher = TeacherSettings {
-        order: args.teacher,
-        counterexamples: args.counterexample,
-        error_rate: args.error_rate,
-        seed: args.seed,
-    };
+    let teacher = teacher(args);
     let known = target.known().to_vec();
     let mut beyond = None;
     let (report, doubts) = match situation::read(args, &alphabet, file.as_ref())? {
@@ -229,7 +232,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             let class = DfaClass::new(alphabet.clone(), settings);
             let mut learner = Learner::new(class, config, known);
             let mut teacher = ScriptedTeacher::new(&target, teacher);
-            let report = converse(args, &mut learner, &mut teacher, &alphabet, None)?;
+            let words = Words {
+                alphabet: alphabet.clone(),
+                world: None,
+            };
+            let report = converse(args, &mut learner, &mut teacher, &words)?;
             (report, learner.doubts().cloned())
         }
         Some(Situation { world, prior }) => {
@@ -240,7 +247,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             )?;
             let mut learner = Learner::new(class, config, known);
             let mut teacher = SituatedTeacher::new(Arc::clone(&world), open, &target, teacher);
-            let mut report = converse(args, &mut learner, &mut teacher, &alphabet, Some(&world))?;
+            let words = Words {
+                alphabet: alphabet.clone(),
+                world: Some(&world),
+            };
+            let mut report = converse(args, &mut learner, &mut teacher, &words)?;
             beyond = (report.learned.as_ref()).and_then(|part| learner.class().beyond(part));
             if let (Some(path), Some(part)) = (&args.save_part, &report.learned) {
                 save(path, "--save-part", &target, args.seed, part)?;
@@ -252,68 +263,69 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
         save(path, "--save", &target, args.seed, learned)?;
     }
+    let words = Words {
+        alphabet,
+        world: None,
+    };
     summary::tell(
         args,
         strategy,
-        &target,
+        target.name(),
+        &words,
         &report,
         doubts.as_ref(),
         beyond.as_ref(),
     )?;
+    Ok(status(&report))
+}
+
+/// Refuses what strategy and teacher cannot keep.
+fn check_promises(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
+    if args.robust && strategy != Strategy::Bayes {
+        anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    }
+    if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
+        anyhow::bail!(
+            "`--promise shortest` would be broken: add `--counterexample shortest`, or drop the promise"
+        );
+    }
+    Ok(())
+}
+
+/// What the learner is told by the arguments alone.
+fn config(args: &Args) -> Config {
+    let membership_cost = args.membership_cost.unwrap_or(4.0);
+    Config {
+        strategy: args.strategy.unwrap_or(Strategy::Bayes),
+        membership_cost,
+        comparison_cost: args.comparison_cost.unwrap_or(1.0),
+        equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
+        shortest_counterexamples: args.promise.is_some(),
+        robust: args.robust,
+        conformance: args.conformance,
+        seed: args.seed,
+        budget: BUDGET,
+    }
+}
+
+/// How the teacher answers.
+fn teacher(args: &Args) -> TeacherSettings {
+    TeacherSettings {
+        order: args.teacher,
+        counterexamples: args.counterexample,
+        error_rate: args.error_rate,
+        seed: args.seed,
+    }
+}
+
+/// Whether the target was learned, and borne out where that was asked for.
+fn status<C>(report: &Report<C>) -> ExitCode {
     let borne_out = report.check.as_ref().is_none_or(Progress::is_complete);
-    Ok(if report.learned.is_some() && borne_out {
+    if report.learned.is_some() && borne_out {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(1)
-    })
-}
-
-/// Lets the teacher teach the learner, and tells of it what is asked to be told.
-fn converse<C, T>(
-    args: &Args,
-    learner: &mut Learner<C>,
-    teacher: &mut T,
-    alphabet: &Alphabet,
-    world: Option<&World>,
-) -> anyhow::Result<Report<Dfa>>
-where
-    C: ConceptClass<Concept = Dfa, Atom = Word>,
-    T: Teacher<Concept = Dfa, Atom = Word>,
-{
-    // Drawn only on a terminal, and only where the trace does not tell anyway.
-    let progress = if args.trace {
-        ProgressBar::hidden()
-    } else {
-        ProgressBar::new_spinner()
-    };
-    progress.enable_steady_tick(Duration::from_millis(200));
-    let mut printed = Ok(());
-    // The check and the batch of the last claim told.
-    let mut told = (0, 0);
-    let report = teach(learner, teacher, args.max_questions, process_cpu, |asked| {
-        let questions = |number| counted(number, "question", "questions");
-        progress.set_message(match asked.check {
-            None => format!("{} asked", questions(asked.number)),
-            Some(check) => format!(
-                "{} asked; {} of {} random words judged",
-                questions(asked.number),
-                check.judged,
-                check.needed
-            ),
-        });
-        if args.trace && printed.is_ok() {
-            printed = check::batch(args.format, asked, &mut told)
-                .and_then(|()| trace::line(args.format, alphabet, world, asked));
-        }
-    });
-    progress.finish_and_clear();
-    printed?;
-    let report = report?;
-    if args.trace {
-        let mut conflicts = report.conflicts.iter();
-        conflicts.try_for_each(|dropped| trace::conflict(args.format, dropped))?;
     }
-    Ok(report)
 }
 
 /// The target of this name, or else of this file; and the file, if it is a task.

@@ -56,16 +56,56 @@ pub(crate) fn cause(cause: Cause) -> &'static str {
     }
 }
 
+/// What the atoms and concepts of a class are called.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nouns {
+    /// The key of an atom in JSON lines.
+    pub(crate) key: Key,
+    /// One atom.
+    pub(crate) atom: &'static str,
+    /// Several atoms.
+    pub(crate) atoms: &'static str,
+    /// One concept, without its article.
+    pub(crate) concept: &'static str,
+}
+
+/// The key of an atom in JSON lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Key {
+    Word,
+    Atom,
+}
+
+/// Those of automata.
+pub(crate) const AUTOMATA: Nouns = Nouns {
+    key: Key::Word,
+    atom: "word",
+    atoms: "words",
+    concept: "automaton",
+};
+
+/// Those of any other class, where it has none of its own.
+pub(crate) const CONCEPTS: Nouns = Nouns {
+    key: Key::Atom,
+    atom: "behaviour",
+    atoms: "behaviours",
+    concept: "concept",
+};
+
 /// Why answers, "they", cannot stand together.
-pub(crate) fn because(cause: Cause) -> String {
+pub(crate) fn because(cause: Cause, nouns: &Nouns) -> String {
     match cause {
         Cause::Order => "Followed round, they say that something is better than itself.".to_owned(),
-        Cause::Equality => {
-            "They say of the same two words that they are equally good, and that one is better."
-                .to_owned()
-        }
-        Cause::MemRep => {
-            "They accept a word that is no better than one that they reject.".to_owned()
+        Cause::Equality => format!(
+            "They say of the same two {} that they are equally good, and that one is better.",
+            nouns.atoms
+        ),
+        Cause::MemRep => format!(
+            "They accept a {} that is no better than one that they reject.",
+            nouns.atom
+        ),
+        Cause::States { bound } if nouns.key == Key::Atom => {
+            format!("No concept of size {bound} or less fits them.")
         }
         Cause::States { bound: 1 } => "No automaton with 1 state fits them.".to_owned(),
         Cause::States { bound } => {

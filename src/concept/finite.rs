@@ -6,9 +6,8 @@ use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{
-    Cause, ConceptClass, Contradiction, Failure, Preorder, Sample, Spread, Weighted, Wish, tally,
-};
+use super::blame::blame;
+use super::{ConceptClass, Contradiction, Failure, Sample, Spread, Weighted, Wish, tally};
 use crate::belief::Belief;
 use crate::evidence::{AnswerId, Budget, Fact};
 
@@ -126,52 +125,13 @@ impl FiniteClass {
         facts.all(|fact| fact.holds(|atom| self.contains(&concept, atom)))
     }
 
-    /// Whether some concept is consistent with the facts known from the start
-    /// and those of `answers`.
-    fn is_satisfiable(&self, answers: &[AnswerId]) -> bool {
-        self.concepts().any(|concept| {
-            let facts = self
-                .facts
-                .iter()
-                .filter(|(answer, _)| answer.is_none_or(|a| answers.contains(&a)))
-                .map(|(_, fact)| fact);
-            self.is_consistent(concept, facts)
-        })
-    }
-
-    /// Why nothing is consistent: answers are dropped one by one as long as
-    /// nothing is, latest first, so that early answers are blamed last.
+    /// Why nothing is consistent.
     fn contradiction(&self) -> Contradiction {
-        let mut answers: Vec<AnswerId> = self
-            .facts
-            .iter()
-            .filter_map(|(answer, _)| *answer)
-            .collect();
-        answers.sort_unstable();
-        answers.dedup();
-        for index in (0..answers.len()).rev() {
-            let mut rest = answers.clone();
-            rest.remove(index);
-            if !self.is_satisfiable(&rest) {
-                answers = rest;
-            }
-        }
-        let mut order = Preorder::default();
-        for (answer, fact) in &self.facts {
-            if answer.is_none_or(|a| answers.contains(&a)) {
-                order.add(*answer, fact);
-            }
-        }
         let bound = self.columns.iter().map(|c| c.size).max().unwrap_or(0);
-        Contradiction {
-            answers,
-            cause: if order.misplaces_membership() {
-                Cause::MemRep
-            } else {
-                Cause::States { bound }
-            },
-            minimal: true,
-        }
+        blame(&self.facts, bound, |facts| {
+            let consistent = |concept| self.is_consistent(concept, facts.iter().copied());
+            Some(self.concepts().any(consistent))
+        })
     }
 }
 

@@ -3,11 +3,14 @@
 //! A class knows which of its concepts are consistent, smallest first, and on
 //! which atoms two of them differ. It must not know bandits, costs or people.
 
+mod blame;
 mod dfa;
 mod finite;
+mod monotone;
 mod preorder;
 mod prior;
 mod situated;
+mod table;
 mod template;
 
 use std::fmt::Debug;
@@ -22,9 +25,14 @@ use crate::evidence::{AnswerId, Budget, Fact};
 pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish};
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
+pub use monotone::{
+    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MonotoneClass, Place,
+    Point,
+};
 pub use preorder::Preorder;
 pub use prior::{Applied, Prior, PriorError};
 pub use situated::Situated;
+pub use table::{FiniteTable, TableError};
 pub use template::{Template, TemplateError};
 
 /// The atoms that are drawn from where a class knows no better distribution.

@@ -3,18 +3,22 @@
 //! A teacher knows its target and a preference order over atoms. It must not
 //! know learners.
 
+mod classed;
 mod counterexample;
 mod drawn;
+mod monotone;
 mod order;
 mod scripted;
 mod situated;
 mod target;
 
+pub use classed::ClassGoal;
 pub use counterexample::Counterexamples;
 pub use drawn::Shape;
 pub(crate) use drawn::minimal;
+pub use monotone::{MonotoneError, MonotoneTarget};
 pub use order::{Order, PreferenceOrder};
-pub use scripted::{ScriptedTeacher, TeacherSettings};
+pub use scripted::{Goal, Language, ScriptedTeacher, TeacherSettings};
 pub use situated::SituatedTeacher;
 pub use target::{Target, TargetError};
 

@@ -61,16 +61,7 @@ impl PreferenceOrder {
 
     /// Which of the two is better.
     pub fn compare(&self, first: &Word, second: &Word) -> Comparison {
-        let (strand_of_first, first) = self.place(first);
-        let (strand_of_second, second) = self.place(second);
-        if strand_of_first != strand_of_second {
-            return Comparison::Incomparable;
-        }
-        match first.cmp(&second) {
-            Ordering::Less => Comparison::Second,
-            Ordering::Equal => Comparison::Equal,
-            Ordering::Greater => Comparison::First,
-        }
+        compare_places(self.place(first), self.place(second))
     }
 
     /// A word's strand (words of different strands are incomparable) and its
@@ -124,24 +115,41 @@ impl PreferenceOrder {
     /// A strand and a level drawn for this word alone, whatever was asked
     /// before.
     fn random(&self, word: &Word, seed: u64) -> (u8, Place) {
-        let mut random = ChaCha8Rng::seed_from_u64(fingerprint(seed, word));
-        let strand = u8::from(random.random_ratio(SECOND_STRAND, 10_000));
-        let mut level = 0;
-        while random.random_ratio(NEXT_LEVEL, 1000) {
-            level += 1;
-        }
-        let place = if self.target.accepts(word) {
-            Place::Accepted(level)
-        } else {
-            Place::Rejected(level)
-        };
-        (strand, place)
+        drawn_place(fingerprint(seed, word), self.target.accepts(word))
+    }
+}
+
+/// The place in a random order of an atom with this fingerprint.
+pub(super) fn drawn_place(fingerprint: u64, accepted: bool) -> (u8, Place) {
+    let mut random = ChaCha8Rng::seed_from_u64(fingerprint);
+    let strand = u8::from(random.random_ratio(SECOND_STRAND, 10_000));
+    let mut level = 0;
+    while random.random_ratio(NEXT_LEVEL, 1000) {
+        level += 1;
+    }
+    let place = if accepted {
+        Place::Accepted(level)
+    } else {
+        Place::Rejected(level)
+    };
+    (strand, place)
+}
+
+/// The answer that places give, each with its strand.
+pub(super) fn compare_places(first: (u8, Place), second: (u8, Place)) -> Comparison {
+    if first.0 != second.0 {
+        return Comparison::Incomparable;
+    }
+    match first.1.cmp(&second.1) {
+        Ordering::Less => Comparison::Second,
+        Ordering::Equal => Comparison::Equal,
+        Ordering::Greater => Comparison::First,
     }
 }
 
 /// A level of a total preorder; a later variant is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Place {
+pub(super) enum Place {
     /// Rejected, in the sink after so many symbols.
     Sunk(usize),
     /// Rejected otherwise.
@@ -150,20 +158,21 @@ enum Place {
     Accepted(usize),
 }
 
-/// A number that differs for different words and seeds, but for chance: the
-/// finaliser of `SplitMix64` over the symbols.
+/// A number that differs for different words and seeds, but for chance.
 fn fingerprint(seed: u64, word: &Word) -> u64 {
+    word.iter().fold(mixed(0, seed), |hash, symbol| {
+        mixed(hash, symbol.index() as u64 + 1)
+    })
+}
+
+/// A hash with one more item: the finaliser of `SplitMix64`.
+pub(super) fn mixed(hash: u64, item: u64) -> u64 {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     };
-    let step = |hash: u64, item: u64| {
-        mix(hash
-            .wrapping_add(0x9e37_79b9_7f4a_7c15)
-            .wrapping_add(mix(item)))
-    };
-    word.iter().fold(step(0, seed), |hash, symbol| {
-        step(hash, symbol.index() as u64 + 1)
-    })
+    mix(hash
+        .wrapping_add(0x9e37_79b9_7f4a_7c15)
+        .wrapping_add(mix(item)))
 }

@@ -11,6 +11,7 @@ mod finite;
 mod fold;
 mod hurried;
 mod implied;
+mod monotone;
 mod order;
 mod refusals;
 mod robust;

@@ -36,8 +36,8 @@ pub(super) struct Options {
     /// The seed of the first run of a cell; the others follow.
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// The teacher's preference order: random for the robot and ordered for all
-    /// others, where nothing is said.
+    /// The teacher's preference order: random for the robot and `monotone` and
+    /// ordered for all others, where nothing is said.
     #[arg(long, value_name = "ORDER")]
     teacher: Option<Order>,
     /// How the teacher refutes a wrong hypothesis.
@@ -89,14 +89,17 @@ pub(super) struct NoiseOptions {
 pub(super) struct DrawnOptions {
     #[command(flatten)]
     options: Options,
-    /// How many targets to draw: 30, where nothing is said.
+    /// How many targets to draw: 30, and 100 for `monotone`, where nothing is said.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     targets: Option<u64>,
 }
 
 /// Runs an experiment with drawn targets.
 pub(super) fn run_drawn(experiment: Experiment, args: &DrawnOptions) -> anyhow::Result<ExitCode> {
-    let targets = Experiment::drawn_targets(args.options.quick);
+    if experiment == Experiment::Monotone && args.options.aalpy.is_some() {
+        bail!("`--aalpy`: these rivals learn automata, leave it out");
+    }
+    let targets = experiment.drawn_targets(args.options.quick);
     let targets = args.targets.unwrap_or(targets);
     run(plan(experiment, &args.options, targets)?, &args.options)
 }
@@ -206,7 +209,7 @@ fn command(plan: &Plan, options: &Options) -> String {
     let mut add = |name: &str, value: String| {
         let _ = write!(command, " --{name} {value}");
     };
-    if plan.experiment.drawn().is_some() {
+    if plan.experiment.is_drawn() {
         add("targets", plan.targets.len().to_string());
     }
     add("trials", plan.trials.to_string());

@@ -1,7 +1,6 @@
 //! `--conformance`: how its two numbers are read, and what the check allows to
 //! say.
 
-use automata::{Dfa, Word};
 use serde::Serialize;
 
 use crate::bench::Asked;
@@ -28,7 +27,7 @@ pub(super) struct Checked {
     /// The number of the check, from 1.
     round: u32,
     needed: u32,
-    /// The draws about which the automaton is right; their labels were asked for
+    /// The draws about which the concept is right; their labels were asked for
     /// or known.
     judged: u32,
     /// The judgements that were asked for, in all checks.
@@ -59,7 +58,7 @@ impl Checked {
 }
 
 /// What the check allows to say.
-pub(super) fn tell(check: &Progress, max_questions: u32) -> anyhow::Result<()> {
+pub(super) fn tell(check: &Progress, max_questions: u32, atoms: &str) -> anyhow::Result<()> {
     match check.claim() {
         Some(claim) => output::line(format!("checked: {claim}"))?,
         None => output::line("checked: too little for a claim")?,
@@ -68,7 +67,7 @@ pub(super) fn tell(check: &Progress, max_questions: u32) -> anyhow::Result<()> {
         return Ok(());
     }
     output::line(format!(
-        "the check has come to {} of {} random words within {}; allow more by `--max-questions`",
+        "the check has come to {} of {} random {atoms} within {}; allow more by `--max-questions`",
         check.judged,
         check.needed,
         output::counted(max_questions, "question", "questions")
@@ -76,9 +75,10 @@ pub(super) fn tell(check: &Progress, max_questions: u32) -> anyhow::Result<()> {
 }
 
 /// Tells people what may be claimed once a batch of the check is judged.
-pub(super) fn batch(
+pub(super) fn batch<A, C>(
     format: Output,
-    asked: &Asked<'_, Word, Dfa>,
+    asked: &Asked<'_, A, C>,
+    atoms: &str,
     told: &mut (u32, u32),
 ) -> anyhow::Result<()> {
     let Some(check) = asked.check.filter(|_| format == Output::Text) else {
@@ -93,7 +93,7 @@ pub(super) fn batch(
         return Ok(());
     };
     output::line(format!(
-        "   {} of {} random words judged: {claim}",
+        "   {} of {} random {atoms} judged: {claim}",
         check.judged, check.needed
     ))
 }

@@ -2,24 +2,27 @@
 
 use std::time::Duration;
 
-use automata::{Dfa, Word};
 use serde::Serialize;
 
+use super::teller::Teller;
 use super::{Args, check, doubts};
 use crate::bench::{Report, percentile};
-use crate::cli::output::{self, Output, counted};
+use crate::cli::output::{self, Key, Output, counted};
 use crate::learner::{Doubts, Strategy};
-use crate::oracle::Target;
 
 /// What `--format json` prints last.
 #[derive(Serialize)]
-struct Summary<'a> {
+struct Summary<'a, A> {
     target: &'a str,
     strategy: Strategy,
     seed: u64,
     equivalent: bool,
     /// The number of states learned.
-    states: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    states: Option<Option<usize>>,
+    /// The size of what was learned, where it is no automaton.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    size: Option<Option<usize>>,
     membership: u32,
     comparison: u32,
     equivalence: u32,
@@ -33,7 +36,7 @@ struct Summary<'a> {
     hurried: u32,
     /// A behaviour that would decide what nothing that can be shown does.
     #[serde(skip_serializing_if = "Option::is_none")]
-    beyond: Option<Vec<&'a str>>,
+    beyond: Option<A>,
     #[serde(skip_serializing_if = "Option::is_none")]
     conformance: Option<check::Checked>,
     question_ms: Milliseconds,
@@ -65,24 +68,27 @@ fn rounded(number: f64) -> f64 {
 }
 
 /// Tells what came of it.
-pub(super) fn tell(
+pub(super) fn tell<L: Teller>(
     args: &Args,
     strategy: Strategy,
-    target: &Target,
-    report: &Report<Dfa>,
+    target: &str,
+    teller: &L,
+    report: &Report<L::Concept>,
     doubts: Option<&Doubts>,
-    beyond: Option<&Word>,
+    beyond: Option<&L::Atom>,
 ) -> anyhow::Result<()> {
-    let alphabet = target.dfa().alphabet();
+    let atoms = L::NOUNS.atoms;
     let counts = report.counts;
     let times = Milliseconds::of(&report.question_times);
     if args.format == Output::Json {
+        let size = (report.learned.as_ref()).map(|learned| teller.size(learned));
         let summary = Summary {
-            target: target.name(),
+            target,
             strategy,
             seed: args.seed,
             equivalent: report.learned.is_some(),
-            states: report.learned.as_ref().map(Dfa::size),
+            states: (L::NOUNS.key == Key::Word).then_some(size),
+            size: (L::NOUNS.key == Key::Atom).then_some(size),
             membership: counts.membership,
             comparison: counts.comparison,
             equivalence: counts.equivalence,
@@ -91,7 +97,7 @@ pub(super) fn tell(
             wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
             doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
             hurried: report.hurried,
-            beyond: beyond.map(|word| alphabet.spell(word).collect()),
+            beyond: beyond.map(|atom| teller.atom_line(atom)),
             conformance: (report.check.as_ref())
                 .map(|check| check::Checked::of(check, counts.conformance)),
             question_ms: times,
@@ -100,25 +106,21 @@ pub(super) fn tell(
         return output::line(serde_json::to_string(&summary)?);
     }
     match &report.learned {
-        Some(learned) => output::line(format!(
-            "learned: {} with {}",
-            target.name(),
-            counted(learned.size(), "state", "states")
-        ))?,
+        Some(learned) => output::line(format!("learned: {target} {}", teller.learned(learned)))?,
         None => output::line(format!(
-            "not learned: {} within {}; allow more by `--max-questions`",
-            target.name(),
+            "not learned: {target} within {}; allow more by `--max-questions`",
             counted(args.max_questions, "question", "questions")
         ))?,
     }
-    if let Some(word) = beyond {
+    if let Some(atom) = beyond {
         output::line(format!(
-            "undecided: nothing that can be shown is like {}, where the automaton was chosen for its simplicity",
-            output::spelled(alphabet, word)
+            "undecided: nothing that can be shown is like {}, where the {} was chosen for its simplicity",
+            teller.spelled(atom),
+            L::NOUNS.concept
         ))?;
     }
     if let Some(check) = &report.check {
-        check::tell(check, args.max_questions)?;
+        check::tell(check, args.max_questions, atoms)?;
     }
     let judged = args.conformance.map_or(String::new(), |_| {
         let judged = counted(counts.conformance, "judgement", "judgements");

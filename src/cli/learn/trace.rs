@@ -1,34 +1,40 @@
 //! `--trace`: every question with its answer, and answers that contradict each
 //! other, a line each.
 
-use automata::{Alphabet, Dfa, Word};
 use serde::Serialize;
 
+use super::teller::Teller;
 use crate::bench::{Asked, Dropped};
-use crate::cli::output::{self, Output};
+use crate::cli::output::{self, Key, Nouns, Output};
 use crate::evidence::{AnswerId, Comparison};
 use crate::learner::{Question, Reply};
-use crate::world::{Shown, World};
+use crate::world::Shown;
 
-/// One line of the trace for programs.
+/// One line of the trace for programs; words stand under `word`, and the atoms of
+/// other classes under `atom`.
 #[derive(Serialize)]
-struct Line<'a> {
+struct Line<'a, A, C> {
     question: u32,
     kind: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    first: Option<Vec<&'a str>>,
+    first: Option<A>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    second: Option<Vec<&'a str>>,
+    second: Option<A>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    hypothesis: Option<&'a Dfa>,
+    hypothesis: Option<C>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    word: Option<Vec<&'a str>>,
+    word: Option<A>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    atom: Option<A>,
     /// What shows the words of the question, in their order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shown: Vec<Shown<'a>>,
     answer: &'static str,
+    /// The counterexample.
     #[serde(rename = "word", skip_serializing_if = "Option::is_none")]
-    counterexample: Option<Vec<&'a str>>,
+    word_shown: Option<A>,
+    #[serde(rename = "atom", skip_serializing_if = "Option::is_none")]
+    atom_shown: Option<A>,
     #[serde(skip_serializing_if = "Option::is_none")]
     label: Option<bool>,
     /// The number of the check that the question belongs to.
@@ -47,7 +53,7 @@ struct ConflictLine<'a> {
 }
 
 /// Prints answers that contradict each other.
-pub(super) fn conflict(format: Output, conflict: &Dropped) -> anyhow::Result<()> {
+pub(super) fn conflict(format: Output, nouns: &Nouns, conflict: &Dropped) -> anyhow::Result<()> {
     let Dropped {
         contradiction,
         answers,
@@ -67,25 +73,24 @@ pub(super) fn conflict(format: Output, conflict: &Dropped) -> anyhow::Result<()>
     output::line(format!(
         "   answers {} cannot all be true. {} Dropped: {}",
         numbers(&contradiction.answers),
-        output::because(contradiction.cause),
+        output::because(contradiction.cause, nouns),
         numbers(answers)
     ))
 }
 
 /// Prints one question with its answer.
-pub(super) fn line(
+pub(super) fn line<L: Teller>(
     format: Output,
-    alphabet: &Alphabet,
-    world: Option<&World>,
-    asked: &Asked<'_, Word, Dfa>,
+    teller: &L,
+    asked: &Asked<'_, L::Atom, L::Concept>,
 ) -> anyhow::Result<()> {
     for dropped in asked.conflicts {
-        conflict(format, dropped)?;
+        conflict(format, &L::NOUNS, dropped)?;
     }
     let number = asked.number;
     let answer = answer(asked.reply);
     if format == Output::Text {
-        let spelled = |word| output::spelled(alphabet, word);
+        let spelled = |atom| teller.spelled(atom);
         let question = match asked.question {
             Question::Membership { atom } => format!("is {} acceptable?", spelled(atom)),
             Question::Comparison { first, second } => {
@@ -96,8 +101,7 @@ pub(super) fn line(
                 )
             }
             Question::Equivalence { hypothesis } => {
-                let states = output::counted(hypothesis.size(), "state", "states");
-                format!("is it this automaton with {states}?")
+                format!("is it {}?", teller.described(hypothesis))
             }
         };
         let shown = match asked.reply {
@@ -109,12 +113,10 @@ pub(super) fn line(
         };
         return output::line(format!("{number}. {question} {shown}"));
     }
-    let spell = |word| Some(alphabet.spell(word).collect());
-    let show = |words: &[&Word]| match world {
-        Some(world) => (words.iter())
-            .filter_map(|word| world.shown(word))
-            .collect(),
-        None => Vec::new(),
+    let tell = |atom| Some(teller.atom_line(atom));
+    let show = |atoms: &[&L::Atom]| {
+        let shown = atoms.iter().filter_map(|atom| teller.shown(atom));
+        shown.collect()
     };
     let mut line = Line {
         question: number,
@@ -123,31 +125,39 @@ pub(super) fn line(
         second: None,
         hypothesis: None,
         word: None,
+        atom: None,
         shown: Vec::new(),
         answer,
-        counterexample: None,
+        word_shown: None,
+        atom_shown: None,
         label: None,
         check: asked.check.map(|check| check.round),
     };
     match asked.question {
         Question::Membership { atom } => {
             line.kind = "membership";
-            line.word = spell(atom);
+            match L::NOUNS.key {
+                Key::Word => line.word = tell(atom),
+                Key::Atom => line.atom = tell(atom),
+            }
             line.shown = show(&[atom]);
         }
         Question::Comparison { first, second } => {
             line.kind = "comparison";
-            line.first = spell(first);
-            line.second = spell(second);
+            line.first = tell(first);
+            line.second = tell(second);
             line.shown = show(&[first, second]);
         }
         Question::Equivalence { hypothesis } => {
             line.kind = "equivalence";
-            line.hypothesis = Some(hypothesis);
+            line.hypothesis = Some(teller.concept_line(hypothesis));
         }
     }
     if let Reply::Counterexample { atom, label } = asked.reply {
-        line.counterexample = spell(atom);
+        match L::NOUNS.key {
+            Key::Word => line.word_shown = tell(atom),
+            Key::Atom => line.atom_shown = tell(atom),
+        }
         line.label = Some(*label);
     }
     output::line(serde_json::to_string(&line)?)
