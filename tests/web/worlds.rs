@@ -35,14 +35,15 @@ fn robot() -> Value {
 
 /// A walk goes from cell to neighbouring cell, and gives the word.
 fn check_walk(shown: &Value, word: &Value) {
-    let cells: Vec<(i64, i64)> = (shown["walk"].as_array().unwrap().iter())
-        .map(|cell| (cell[0].as_i64().unwrap(), cell[1].as_i64().unwrap()))
+    let at = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+    let cells: Vec<(usize, usize)> = (shown["walk"].as_array().unwrap().iter())
+        .map(|cell| (at(&cell[0]), at(&cell[1])))
         .collect();
-    let tile = |(row, column): (i64, i64)| ROOM[row as usize].as_bytes()[column as usize] as char;
+    let tile = |(row, column): (usize, usize)| char::from(ROOM[row].as_bytes()[column]);
     assert_eq!(tile(cells[0]), 'S');
     for pair in cells.windows(2) {
         let ((a, b), (c, d)) = (pair[0], pair[1]);
-        assert_eq!((a - c).abs() + (b - d).abs(), 1, "{shown}");
+        assert_eq!(a.abs_diff(c) + b.abs_diff(d), 1, "{shown}");
     }
     let given = cells[1..].iter().map(|&cell| tile(cell));
     let given: Vec<String> = given
