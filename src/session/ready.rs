@@ -1,12 +1,31 @@
 //! The tasks that come with memrep: what the person should have in mind, the
 //! symbols, and what is known at the start; never the target itself.
 
+use std::path::Path;
+
 use crate::task::{
-    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task,
+    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task, TaskFile,
 };
 
 /// The names under which [`ready`] finds a task, for people.
-pub const NAMES: &str = "robot, tomita:1 to tomita:7, modulo:K, zeros:N";
+pub const NAMES: &str = "robot, robot-recharge, patrol, deliver, repairs, four-buttons, car, tomita:1 to tomita:7, modulo:K, zeros:N";
+
+/// The ready tasks that have files, by name. Their targets are for scripted teachers
+/// alone.
+const FILES: [(&str, &str); 6] = [
+    (
+        "robot-recharge",
+        include_str!("../../examples/tasks/robot-recharge.toml"),
+    ),
+    ("patrol", include_str!("../../examples/tasks/patrol.toml")),
+    ("deliver", include_str!("../../examples/tasks/deliver.toml")),
+    ("repairs", include_str!("../../examples/tasks/repairs.toml")),
+    (
+        "four-buttons",
+        include_str!("../../examples/tasks/four-buttons.toml"),
+    ),
+    ("car", include_str!("../../examples/tasks/car.toml")),
+];
 
 const TOMITA: [(&str, &str); 7] = [
     (
@@ -42,12 +61,19 @@ const TOMITA: [(&str, &str); 7] = [
 const COMPARING: &str = "Of two sequences, an acceptable one is better than one that is not; two of the same kind are equally good or bad.";
 
 /// The ready task of this name: `robot`, `tomita:1` to `tomita:7`, `modulo:K`,
-/// `zeros:N`.
+/// `zeros:N`, or that of a file in `examples/tasks`.
 ///
 /// # Errors
 ///
 /// Names the tasks there are.
 pub fn ready(name: &str) -> Result<Task, Malformed> {
+    if let Some((_, text)) = FILES.iter().find(|(known, _)| *known == name) {
+        let file = TaskFile::from_toml(text, Path::new(""));
+        return file.map(|file| file.task).map_err(|faults| {
+            let first = faults.first().map(|fault| fault.message.as_str());
+            Malformed::new("", first.unwrap_or("this ready task is at fault"))
+        });
+    }
     let (family, number) = match name.split_once(':') {
         Some((family, number)) => (family, Some(number)),
         None => (name, None),
@@ -197,6 +223,17 @@ mod tests {
             assert!(!task.guidelines.is_empty());
         }
         assert_eq!(offered().count(), 10);
+    }
+
+    #[test]
+    fn ready_tasks_in_files_are_called_as_their_files() {
+        for (name, _) in FILES {
+            let task = ready(name).unwrap();
+            assert_eq!(task.name, name);
+            assert!(NAMES.split(", ").any(|known| known == name), "{name}");
+            let again: Task = serde_json::from_value(serde_json::to_value(&task).unwrap()).unwrap();
+            assert_eq!(task, again);
+        }
     }
 
     #[test]

@@ -165,6 +165,26 @@ async fn impossible_counterexamples_are_refused() {
     assert_eq!(still, question);
 }
 
+/// The ready tasks with files are taught by name, in their worlds.
+#[tokio::test]
+async fn ready_tasks_have_their_worlds() {
+    let site = Site::in_memory();
+    for (name, kind) in [("robot-recharge", "grid"), ("car", "words")] {
+        let session = create(&site, json!({"task": name})).await;
+        let state = site.get(&session).await.json();
+        assert_eq!(state["task"]["world"]["kind"], kind);
+        assert_eq!(state["task"].get("target"), None);
+        let question = site.get(&format!("{session}/question")).await.json();
+        assert_eq!(
+            question.get("shown").is_some(),
+            kind == "grid",
+            "{question}"
+        );
+        let page = site.get(&session.replace("/api/v1", "")).await;
+        assert_eq!(page.status, StatusCode::OK);
+    }
+}
+
 /// A task that is at fault makes no session, and its place is named.
 #[tokio::test]
 async fn faulty_worlds_make_no_session() {
