@@ -184,7 +184,7 @@ fn faults_are_told_by_line_and_column() {
         (
             "word = [\"b\"]",
             "word = [\"b\", \"c\"]",
-            "room.toml:4:17: examples[0].word[1]: `c` is not a symbol",
+            "room.toml:4:18: examples[0].word[1]: `c` is not a symbol",
         ),
         (
             "[world]",

@@ -14,6 +14,7 @@ mod event;
 mod explain;
 mod pupil;
 mod ready;
+mod rule;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,7 +33,6 @@ pub use crate::task::{
     Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
     Malformed, SymbolText, Task, read_word,
 };
-use crate::world::World;
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
@@ -379,44 +379,5 @@ impl Session {
     /// The standing answers by kind; skipped questions count nowhere.
     pub fn counts(&self) -> Counts {
         self.learner.counts()
-    }
-
-    /// The world of the task; none where it is all words, shown as they are.
-    pub fn world(&self) -> Option<&World> {
-        self.situation.as_ref().map(|situation| &*situation.world)
-    }
-
-    /// Whether something is known beforehand, beside which the rest is learned.
-    pub fn has_prior(&self) -> bool {
-        !self.task.prior.is_empty()
-    }
-
-    /// The whole automaton, of which this is the part that is learned beside what is
-    /// known beforehand: the part is what the learner asks about and the log has.
-    pub fn whole(&self, learned: &Dfa) -> Dfa {
-        match &self.situation {
-            Some(situation) if self.has_prior() => situation.prior.whole(learned),
-            _ => learned.clone(),
-        }
-    }
-
-    /// The automaton on show as a [whole](Self::whole): the one asked about, or the
-    /// one agreed on.
-    ///
-    /// Between those there is none: the last one shown was refuted.
-    pub fn hypothesis(&self) -> Option<Dfa> {
-        self.learned().map(|learned| self.whole(learned))
-    }
-
-    /// The part of [`Self::hypothesis`] that is learned.
-    pub fn learned(&self) -> Option<&Dfa> {
-        match &self.position {
-            Position::Done(hypothesis) => Some(hypothesis),
-            Position::Asking(number) => match &self.asked.get(number)?.question {
-                Question::Equivalence { hypothesis } => Some(hypothesis),
-                _ => None,
-            },
-            Position::Thinking | Position::Conflict(_) => None,
-        }
     }
 }

@@ -176,8 +176,12 @@ pub(super) fn read_rule(
                 return Err(fault(&error));
             };
             let file = files.find(text, path)?;
-            let content = std::fs::read_to_string(&file)
-                .map_err(|error| fault(&format!("{}: cannot read it: {error}", file.display())))?;
+            let content = std::fs::read_to_string(&file).map_err(|error| {
+                fault(&format!(
+                    "{}: cannot read it, name a file as seen from the task: {error}",
+                    file.display()
+                ))
+            })?;
             let dfa = if extension == "dot" || extension == "gv" {
                 dot::read(&content).map_err(|error| error.to_string())
             } else {

@@ -35,14 +35,15 @@ fn robot() -> Value {
 
 /// A walk goes from cell to neighbouring cell, and gives the word.
 fn check_walk(shown: &Value, word: &Value) {
-    let cells: Vec<(i64, i64)> = (shown["walk"].as_array().unwrap().iter())
-        .map(|cell| (cell[0].as_i64().unwrap(), cell[1].as_i64().unwrap()))
+    let at = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+    let cells: Vec<(usize, usize)> = (shown["walk"].as_array().unwrap().iter())
+        .map(|cell| (at(&cell[0]), at(&cell[1])))
         .collect();
-    let tile = |(row, column): (i64, i64)| ROOM[row as usize].as_bytes()[column as usize] as char;
+    let tile = |(row, column): (usize, usize)| char::from(ROOM[row].as_bytes()[column]);
     assert_eq!(tile(cells[0]), 'S');
     for pair in cells.windows(2) {
         let ((a, b), (c, d)) = (pair[0], pair[1]);
-        assert_eq!((a - c).abs() + (b - d).abs(), 1, "{shown}");
+        assert_eq!(a.abs_diff(c) + b.abs_diff(d), 1, "{shown}");
     }
     let given = cells[1..].iter().map(|&cell| tile(cell));
     let given: Vec<String> = given
@@ -162,6 +163,26 @@ async fn impossible_counterexamples_are_refused() {
     }
     let still = site.get(&format!("{session}/question")).await.json();
     assert_eq!(still, question);
+}
+
+/// The ready tasks with files are taught by name, in their worlds.
+#[tokio::test]
+async fn ready_tasks_have_their_worlds() {
+    let site = Site::in_memory();
+    for (name, kind) in [("robot-recharge", "grid"), ("car", "words")] {
+        let session = create(&site, json!({"task": name})).await;
+        let state = site.get(&session).await.json();
+        assert_eq!(state["task"]["world"]["kind"], kind);
+        assert_eq!(state["task"].get("target"), None);
+        let question = site.get(&format!("{session}/question")).await.json();
+        assert_eq!(
+            question.get("shown").is_some(),
+            kind == "grid",
+            "{question}"
+        );
+        let page = site.get(&session.replace("/api/v1", "")).await;
+        assert_eq!(page.status, StatusCode::OK);
+    }
 }
 
 /// A task that is at fault makes no session, and its place is named.
