@@ -453,6 +453,6 @@ fn wrong_answers_are_named() {
     assert!(!doubted.is_empty(), "a fifth of the answers are wrong");
     let people = memrep(&folder, &learn);
     let percent = (share * 100.0).round();
-    let sentence = format!("doubted: about {percent} % of the answers seem wrong");
+    let sentence = format!("(about {percent} % of all are expected to be wrong)");
     assert!(people.stdout.contains(&sentence), "{}", people.stdout);
 }

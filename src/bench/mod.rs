@@ -34,7 +34,7 @@ pub use experiment::{COSTS, Experiment, Plan};
 pub use figure::figure;
 pub use page::markdown;
 pub use results::{Cell, Group, Measure, Results};
-pub use rivals::{RivalsError, run as run_rivals};
+pub use rivals::{RivalsError, find as find_rivals, run as run_rivals};
 pub use run::{Run, RunError, run, size};
 pub use subject::Subject;
 pub use summary::{Pairs, Ratio, Spread, Uncertainty, ratio, spread};

@@ -3,7 +3,7 @@
 
 use std::io::Write as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use automata::{Dfa, StateId, Symbol};
 use serde::Deserialize;
@@ -24,7 +24,7 @@ const SCRIPT: &str = include_str!("rivals.py");
 #[derive(Debug, thiserror::Error)]
 pub enum RivalsError {
     /// Python cannot be started or talked to.
-    #[error("cannot run this Python: {0}")]
+    #[error("cannot run this Python")]
     Start(#[from] std::io::Error),
     /// It ended badly.
     #[error("it complained: {0} (the rivals need AALpy: `pip install aalpy==2.0.0`)")]
@@ -41,6 +41,26 @@ struct Line {
     seed: u64,
     membership: u32,
     equivalence: u32,
+}
+
+/// Whether this Python has the library: to be asked before much work is done.
+///
+/// # Errors
+///
+/// If Python or the library is missing.
+pub fn find(python: &Path) -> Result<(), RivalsError> {
+    let output = Command::new(python).args(["-c", "import aalpy"]).output()?;
+    complaint(&output)
+}
+
+/// What it has to complain of, if it ended badly.
+fn complaint(output: &Output) -> Result<(), RivalsError> {
+    if output.status.success() {
+        return Ok(());
+    }
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    let last = complaint.lines().last().unwrap_or("no reason given");
+    Err(RivalsError::Complaint(last.trim().to_owned()))
 }
 
 /// The rivals' runs with the plan's targets, seeds and counterexamples, repeated
@@ -78,11 +98,7 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
         let _ = input.write_all(task.to_string().as_bytes());
     }
     let output = child.wait_with_output()?;
-    if !output.status.success() {
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        let last = complaint.lines().last().unwrap_or("no reason given");
-        return Err(RivalsError::Complaint(last.trim().to_owned()));
-    }
+    complaint(&output)?;
     let lines = String::from_utf8_lossy(&output.stdout);
     let lines: Vec<Line> = lines
         .lines()

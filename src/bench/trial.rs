@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
-use crate::concept::{ConceptClass, Contradiction};
+use crate::concept::{Cause, ConceptClass, Contradiction};
 use crate::evidence::AnswerId;
-use crate::learner::{Counts, Learner, Progress, Question, Reply, ReplyError, Step};
+use crate::learner::{
+    Counts, EQUIVALENCE_COST, Learner, Progress, Question, Reply, ReplyError, Step,
+};
 use crate::oracle::Teacher;
 
 /// A question with the reply it got, as soon as it is there.
@@ -43,6 +45,9 @@ pub struct Report<C> {
     /// The cost of membership queries and comparisons (Eq. 5.2); a check costs
     /// nothing here.
     pub cost: f64,
+    /// The same with every equivalence query as [`EQUIVALENCE_COST`] membership
+    /// queries.
+    pub all_in: f64,
     /// The number of answers that were dropped because they could not stand
     /// with others.
     pub dropped: u32,
@@ -65,6 +70,17 @@ pub enum TrialError {
         "no concept is consistent with what is known at the start: check it, or allow larger concepts"
     )]
     Contradiction,
+    /// What is true of the target fits nothing that is considered.
+    #[error(
+        "{} true, and nothing of size {bound} or less fits: allow larger ones",
+        these(answers)
+    )]
+    Bound {
+        /// The largest size that is considered.
+        bound: usize,
+        /// The answers that need more, as in a [`Contradiction`].
+        answers: Vec<AnswerId>,
+    },
     /// The teacher's reply was refused.
     #[error("the teacher's reply was refused: {0}")]
     Reply(#[from] ReplyError),
@@ -99,6 +115,7 @@ where
         check: None,
         counts: Counts::default(),
         cost: 0.0,
+        all_in: 0.0,
         dropped: 0,
         conflicts: Vec::new(),
         hurried: 0,
@@ -119,6 +136,13 @@ where
                     return Err(TrialError::Contradiction);
                 }
                 let answers = doubted(learner, conflict.answers.clone());
+                let is_true = |answer| !teacher.may_err() || is_counterexample(learner, answer);
+                if let Cause::States { bound } = conflict.cause
+                    && conflict.answers.iter().all(|&answer| is_true(answer))
+                {
+                    let answers = conflict.answers;
+                    return Err(TrialError::Bound { bound, answers });
+                }
                 for &answer in &answers {
                     report.dropped += u32::from(learner.retract(answer));
                 }
@@ -175,6 +199,8 @@ where
         }
     }
     report.cost = cost(learner, report.counts);
+    let equivalence = EQUIVALENCE_COST * learner.config().membership_cost;
+    report.all_in = report.cost + equivalence * f64::from(report.counts.equivalence);
     report.cpu = clock().saturating_sub(start);
     Ok(report)
 }
@@ -183,17 +209,30 @@ where
 /// only if there is nothing else to drop. Who shows a counterexample has looked
 /// at the hypothesis, and to drop it would bring the same hypothesis again.
 fn doubted<C: ConceptClass>(learner: &Learner<C>, answers: Vec<AnswerId>) -> Vec<AnswerId> {
-    let is_counterexample = |answer: AnswerId| {
-        learner.entries().iter().any(|entry| {
-            entry.answer == answer && matches!(entry.question, Question::Equivalence { .. })
-        })
-    };
-    let (counterexamples, doubted): (Vec<_>, Vec<_>) =
-        answers.into_iter().partition(|&a| is_counterexample(a));
+    let (counterexamples, doubted): (Vec<_>, Vec<_>) = answers
+        .into_iter()
+        .partition(|&answer| is_counterexample(learner, answer));
     if doubted.is_empty() {
         counterexamples
     } else {
         doubted
+    }
+}
+
+/// Whether the answer is a counterexample.
+fn is_counterexample<C: ConceptClass>(learner: &Learner<C>, answer: AnswerId) -> bool {
+    learner.entries().iter().any(|entry| {
+        entry.answer == answer && matches!(entry.question, Question::Equivalence { .. })
+    })
+}
+
+/// Answers as the subject of a sentence, with its verb.
+fn these(answers: &[AnswerId]) -> String {
+    let numbers: Vec<String> = answers.iter().map(|answer| answer.0.to_string()).collect();
+    match &numbers[..] {
+        [] => "what is known at the start is".to_owned(),
+        [one] => format!("answer {one} is"),
+        [most @ .., last] => format!("answers {} and {last} are", most.join(", ")),
     }
 }
 

@@ -210,6 +210,18 @@ fn picture(document: &Document) -> anyhow::Result<String> {
     draw::document(&document.dfa, &captions).context("choose dot-people and draw it with Graphviz")
 }
 
+/// Checks that there is a folder for a file that is written after long work.
+pub(crate) fn check_folder(path: &Path) -> anyhow::Result<()> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => bail!(
+            "{}: there is no folder {}: make it first",
+            path.display(),
+            folder.display()
+        ),
+        _ => Ok(()),
+    }
+}
+
 /// Writes a file, or to the standard output if the path is `-`.
 pub(crate) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     if path == Path::new("-") {

@@ -197,6 +197,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let strategy = args.strategy.or(task.and_then(|task| task.strategy));
     let strategy = strategy.unwrap_or(Strategy::Bayes);
     check_promises(args, strategy)?;
+    for path in [&args.save, &args.save_part].into_iter().flatten() {
+        files::check_folder(path)?;
+    }
     let nothing_known = args.prior.is_empty()
         && args.suffices.is_empty()
         && task.is_none_or(|task| task.prior.is_empty());
@@ -283,6 +286,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn check_promises(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
     if args.robust && strategy != Strategy::Bayes {
         anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
+    }
+    if args.robust && args.conformance.is_some() {
+        anyhow::bail!(
+            "the check of `--conformance` takes judgements for true, and `--robust` takes none so: give one of the two"
+        );
     }
     if args.promise.is_some() && args.counterexample != Counterexamples::Shortest {
         anyhow::bail!(

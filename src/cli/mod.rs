@@ -75,6 +75,10 @@ pub fn main() -> ExitCode {
         }
     };
     result.unwrap_or_else(|error| {
+        if output::is_closed(&error) {
+            // Whoever reads has seen enough, as `head` does.
+            return ExitCode::SUCCESS;
+        }
         eprintln!("error: {error:#}");
         ExitCode::from(2)
     })

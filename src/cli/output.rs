@@ -27,6 +27,16 @@ pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
     writeln!(std::io::stdout(), "{text}").context("the standard output: cannot write to it")
 }
 
+/// Whether a command failed because nobody reads its standard output any more.
+pub(crate) fn is_closed(error: &anyhow::Error) -> bool {
+    let causes = error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<std::io::Error>());
+    causes
+        .map(std::io::Error::kind)
+        .any(|kind| kind == std::io::ErrorKind::BrokenPipe)
+}
+
 /// So many of something, for people: "1 state", "2 states".
 pub(crate) fn counted(
     number: impl Copy + Display + PartialEq + From<u8>,

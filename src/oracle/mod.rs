@@ -34,6 +34,11 @@ pub trait Teacher {
     /// Whether the atom is acceptable.
     fn membership(&mut self, atom: &Self::Atom) -> bool;
 
+    /// Whether a judgement or a comparison may be wrong. Counterexamples never are.
+    fn may_err(&self) -> bool {
+        true
+    }
+
     /// Which of the two is better.
     fn comparison(&mut self, first: &Self::Atom, second: &Self::Atom) -> Comparison;
 

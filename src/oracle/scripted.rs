@@ -140,6 +140,10 @@ impl<G: Goal> Teacher for ScriptedTeacher<G> {
     type Atom = G::Atom;
     type Concept = G::Concept;
 
+    fn may_err(&self) -> bool {
+        self.error_rate > 0.0
+    }
+
     fn membership(&mut self, atom: &G::Atom) -> bool {
         self.goal.contains(atom) != self.errs()
     }

@@ -48,6 +48,10 @@ impl Teacher for SituatedTeacher {
     type Atom = Word;
     type Concept = Dfa;
 
+    fn may_err(&self) -> bool {
+        self.teacher.may_err()
+    }
+
     fn membership(&mut self, atom: &Word) -> bool {
         self.teacher.membership(atom)
     }

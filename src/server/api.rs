@@ -217,9 +217,18 @@ async fn retract(State(app): State<AppState>, Path(id): Path<String>, body: Body
     Ok(Json(app.teaching.act(id, decide, describe).await?))
 }
 
-async fn undo(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
+async fn undo(State(app): State<AppState>, Path(id): Path<String>, bytes: Bytes) -> Answer {
     let id = session_id(&id)?;
-    let decide = |session: &Session| Ok(session.undo()?);
+    // It takes nothing: neither a body nor a key in it.
+    let body: Value = match &bytes[..] {
+        [] => json!({}),
+        bytes => serde_json::from_slice(bytes)
+            .map_err(|_| WebError::Unreadable("leave the body out, or send `{}`".to_owned()))?,
+    };
+    let decide = move |session: &Session| {
+        Fields::of(&body, "")?.only(&[])?;
+        Ok(session.undo()?)
+    };
     Ok(Json(app.teaching.act(id, decide, describe).await?))
 }
 

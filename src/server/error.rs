@@ -139,7 +139,7 @@ impl WebError {
                     .to_owned()
             }
             Self::NoAutomaton => {
-                "No rule is on show at the moment: go on answering until one is.".to_owned()
+                "No rule is on show at the moment: go on answering, or mend the answers that contradict each other, until one is.".to_owned()
             }
             Self::Slow => {
                 "The next question is still being worked out. Your answer is kept: ask again in a moment."

@@ -129,6 +129,9 @@ pub(super) fn run_named(experiment: Experiment, options: &Options) -> anyhow::Re
 /// Runs an experiment and writes what came of it.
 fn run(plan: Plan, options: &Options) -> anyhow::Result<ExitCode> {
     options.out.prepare()?;
+    if let Some(python) = &options.aalpy {
+        bench::find_rivals(python).with_context(|| python.display().to_string())?;
+    }
     let threads = usize::from(options.threads.unwrap_or(0));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -161,9 +164,15 @@ fn run(plan: Plan, options: &Options) -> anyhow::Result<ExitCode> {
     let page = file("md");
     files::write(&page, &bench::markdown(&results, &command, &machine))?;
     let failures = results.failures();
+    let right = results.runs.iter().filter(|run| run.errors == 0).count();
     output::line(format!(
-        "{} runs, {failures} of those with right answers not equivalent; see {}",
-        results.runs.len(),
+        "{} of {right} runs{} ended equivalent; see {}",
+        right - failures,
+        if right < results.runs.len() {
+            " without wrong answers"
+        } else {
+            ""
+        },
         page.display()
     ))?;
     Ok(ExitCode::from(u8::from(failures > 0)))

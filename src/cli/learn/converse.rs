@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 
 use super::teller::Teller;
 use super::{Args, check, trace};
-use crate::bench::{Report, process_cpu, teach};
+use crate::bench::{Report, TrialError, process_cpu, teach};
 use crate::cli::output::counted;
 use crate::concept::ConceptClass;
 use crate::learner::Learner;
@@ -54,7 +54,12 @@ where
     });
     progress.finish_and_clear();
     printed?;
-    let report = report?;
+    let report = report.map_err(|error| match error {
+        TrialError::Bound { .. } => {
+            anyhow::Error::from(error).context("`--max-states` is too small")
+        }
+        _ => error.into(),
+    })?;
     if args.trace {
         let mut conflicts = report.conflicts.iter();
         conflicts.try_for_each(|dropped| trace::conflict(args.format, &L::NOUNS, dropped))?;

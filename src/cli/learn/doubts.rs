@@ -18,12 +18,12 @@ pub(super) fn tell(doubts: &Doubts) -> anyhow::Result<()> {
         .map(|number| number.to_string())
         .collect();
     let which = match answers.len() {
-        0 => String::new(),
-        1 => format!(": number {}", answers[0]),
-        _ => format!(": most of all numbers {}", answers.join(", ")),
+        0 => "no answer".to_owned(),
+        1 => format!("answer {}", answers[0]),
+        _ => format!("answers {}", answers.join(", ")),
     };
     let percent = (doubts.error_rate * 100.0).round();
     output::line(format!(
-        "doubted: about {percent} % of the answers seem wrong{which}"
+        "doubted: {which} (about {percent} % of all are expected to be wrong)"
     ))
 }

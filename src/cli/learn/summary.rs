@@ -8,7 +8,7 @@ use super::teller::Teller;
 use super::{Args, check, doubts};
 use crate::bench::{Report, percentile};
 use crate::cli::output::{self, Key, Output, counted};
-use crate::learner::{Doubts, Strategy};
+use crate::learner::{Doubts, EQUIVALENCE_COST, Strategy};
 
 /// What `--format json` prints last.
 #[derive(Serialize)]
@@ -17,16 +17,13 @@ struct Summary<'a, A> {
     strategy: Strategy,
     seed: u64,
     equivalent: bool,
-    /// The number of states learned.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    states: Option<Option<usize>>,
-    /// The size of what was learned, where it is no automaton.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    size: Option<Option<usize>>,
+    #[serde(flatten)]
+    size: Size,
     membership: u32,
     comparison: u32,
     equivalence: u32,
     cost: f64,
+    all_in_cost: f64,
     dropped: u32,
     /// The share of the answers that seem wrong, and which these are.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,6 +38,16 @@ struct Summary<'a, A> {
     conformance: Option<check::Checked>,
     question_ms: Milliseconds,
     cpu_s: f64,
+}
+
+/// The size of what was learned, if anything was.
+#[derive(Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Size {
+    /// Of an automaton, in states.
+    States(Option<usize>),
+    /// Of another concept.
+    Size(Option<usize>),
 }
 
 /// The CPU time that choosing a question took.
@@ -87,12 +94,15 @@ pub(super) fn tell<L: Teller>(
             strategy,
             seed: args.seed,
             equivalent: report.learned.is_some(),
-            states: (L::NOUNS.key == Key::Word).then_some(size),
-            size: (L::NOUNS.key == Key::Atom).then_some(size),
+            size: match L::NOUNS.key {
+                Key::Word => Size::States(size),
+                Key::Atom => Size::Size(size),
+            },
             membership: counts.membership,
             comparison: counts.comparison,
             equivalence: counts.equivalence,
             cost: report.cost,
+            all_in_cost: report.all_in,
             dropped: report.dropped,
             wrong: doubts.map(|doubts| rounded(doubts.error_rate)),
             doubted: doubts.map(|doubts| doubts::doubted(doubts).collect()),
@@ -137,10 +147,11 @@ pub(super) fn tell<L: Teller>(
         )
     ))?;
     output::line(format!(
-        "cost: {} (equivalence queries{} not counted)",
+        "cost: {}, all-in {} (each equivalence query as {EQUIVALENCE_COST} membership queries{})",
         report.cost,
+        report.all_in,
         if args.conformance.is_some() {
-            " and the check"
+            "; the check not counted"
         } else {
             ""
         }
