@@ -7,7 +7,7 @@ use crate::oracle::{MonotoneTarget, Target};
 #[derive(Clone, Debug)]
 pub enum Subject {
     /// A language.
-    Language(Case),
+    Language(Box<Case>),
     /// A monotone predicate.
     Monotone(MonotoneTarget),
 }
@@ -48,7 +48,7 @@ impl Subject {
 
 impl From<Target> for Subject {
     fn from(target: Target) -> Self {
-        Self::Language(target.into())
+        Self::Language(Box::new(target.into()))
     }
 }
 
@@ -60,6 +60,6 @@ impl From<MonotoneTarget> for Subject {
 
 impl From<Case> for Subject {
     fn from(case: Case) -> Self {
-        Self::Language(case)
+        Self::Language(Box::new(case))
     }
 }

@@ -155,18 +155,17 @@ fn table(target: &str, seed: u64) -> anyhow::Result<(FiniteTable, FiniteConcept)
     let text = files::text(Path::new(path))?;
     let table = FiniteTable::read(&text).with_context(|| path.to_owned())?;
     let mut concepts: Vec<FiniteConcept> = table.class().concepts().collect();
-    let concept = match name {
-        Some(name) => table.named(name).with_context(|| {
+    let concept = if let Some(name) = name {
+        table.named(name).with_context(|| {
             let names: Vec<&str> = concepts.iter().map(|&c| table.concept(c)).collect();
             format!(
                 "{path} has no concept `{name}`: give one of {}",
                 names.join(", ")
             )
-        })?,
-        None => {
-            let mut random = ChaCha8Rng::seed_from_u64(seed);
-            concepts.swap_remove(random.random_range(0..concepts.len()))
-        }
+        })?
+    } else {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        concepts.swap_remove(random.random_range(0..concepts.len()))
     };
     Ok((table, concept))
 }

@@ -19,9 +19,11 @@ struct Summary<'a, A> {
     equivalent: bool,
     /// The number of states learned.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[expect(clippy::option_option, reason = "no key, null, or a number")]
     states: Option<Option<usize>>,
     /// The size of what was learned, where it is no automaton.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[expect(clippy::option_option, reason = "no key, null, or a number")]
     size: Option<Option<usize>>,
     membership: u32,
     comparison: u32,
