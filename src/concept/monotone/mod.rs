@@ -200,10 +200,12 @@ impl<F: Family> ConceptClass for MonotoneClass<F> {
         let slack = self.family.slack(concept, atom);
         let inside = self.contains(concept, atom);
         let merit = if inside { slack } else { 1.0 + slack };
+        #[expect(clippy::cast_sign_loss, reason = "it is clamped to 0 and above")]
+        let merit = (merit.clamp(0.0, 1.0) * MERITS) as u32;
         End {
             inside,
             place: None,
-            merit: (merit.clamp(0.0, 1.0) * MERITS) as u32,
+            merit,
         }
     }
 
