@@ -123,7 +123,7 @@ fn contenders_are_told_what_their_names_say() {
     let config = |key: &str, cost| Contender::of(key).unwrap().config(cost, 3);
     assert_eq!(config("bayes", Some(2)).strategy, Strategy::Bayes);
     assert!(close(config("bayes", Some(2)).equivalence_cost, 8.0));
-    assert!(close(config("bayes-eager", Some(2)).equivalence_cost, 2.4));
+    assert!(close(config("bayes-eager", Some(2)).equivalence_cost, 2.35));
     assert!(config("bayes-robust", Some(2)).robust);
     assert_eq!(config("exp4+", Some(8)).strategy, Strategy::Exp4Plus);
     assert_eq!(config("thesis", Some(8)).strategy, Strategy::Thesis);

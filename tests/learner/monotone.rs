@@ -90,65 +90,62 @@ proptest! {
         let wish = Wish { sizes: 3, decay: 0.5, listed: 1000, heard: &[], seed: 0 };
         let found = class.sample(1000, 0, &mut Budget::unlimited());
         let spread = class.spread(&wish, &mut Budget::unlimited());
-        match (1..=FINEST).find(|&size| !consistent(size).is_empty()) {
-            Some(least) => {
-                let found = found.unwrap();
-                prop_assert!(found.complete);
-                let all: BTreeSet<Point> = found.concepts.iter().cloned().collect();
-                prop_assert_eq!(all.len(), found.concepts.len(), "no two are the same");
-                prop_assert_eq!(&all, &consistent(least));
-                prop_assert!(found.concepts.iter().all(|concept| concept.size() == least));
-                // Fewer are some of these, and the same for the same seed.
-                let some = class.sample(2, 7, &mut Budget::unlimited()).unwrap();
-                prop_assert!(some.concepts.iter().all(|concept| all.contains(concept)));
-                prop_assert_eq!(some.complete, all.len() <= 2);
-                let again = class.sample(2, 7, &mut Budget::unlimited()).unwrap();
-                prop_assert_eq!(&some.concepts, &again.concepts);
+        if let Some(least) = (1..=FINEST).find(|&size| !consistent(size).is_empty()) {
+            let found = found.unwrap();
+            prop_assert!(found.complete);
+            let all: BTreeSet<Point> = found.concepts.iter().cloned().collect();
+            prop_assert_eq!(all.len(), found.concepts.len(), "no two are the same");
+            prop_assert_eq!(&all, &consistent(least));
+            prop_assert!(found.concepts.iter().all(|concept| concept.size() == least));
+            // Fewer are some of these, and the same for the same seed.
+            let some = class.sample(2, 7, &mut Budget::unlimited()).unwrap();
+            prop_assert!(some.concepts.iter().all(|concept| all.contains(concept)));
+            prop_assert_eq!(some.complete, all.len() <= 2);
+            let again = class.sample(2, 7, &mut Budget::unlimited()).unwrap();
+            prop_assert_eq!(&some.concepts, &again.concepts);
 
-                let spread = spread.unwrap();
-                let sizes = least..=(least + 2).min(FINEST);
-                let listed: BTreeSet<Point> = sizes.clone().flat_map(consistent).collect();
-                let weighted: BTreeSet<Point> =
-                    spread.concepts.iter().map(|weighted| weighted.concept.clone()).collect();
-                prop_assert_eq!(&weighted, &listed);
-                prop_assert_eq!(spread.concepts.len(), listed.len());
-                prop_assert!(spread.exact);
-                // Every grid has its share, and every parameter of it the same.
-                for weighted in &spread.concepts {
-                    let on = sizes.clone().filter(|&size| consistent(size).contains(&weighted.concept));
-                    let chance: f64 = on.map(|size| {
-                        0.5_f64.powi((size - least) as i32) / (size as f64).powi(dimensions as i32)
-                    }).sum();
-                    prop_assert!((weighted.log_weight - chance.ln()).abs() < 1e-9);
-                }
+            let spread = spread.unwrap();
+            let sizes = least..=(least + 2).min(FINEST);
+            let listed: BTreeSet<Point> = sizes.clone().flat_map(consistent).collect();
+            let weighted: BTreeSet<Point> =
+                spread.concepts.iter().map(|weighted| weighted.concept.clone()).collect();
+            prop_assert_eq!(&weighted, &listed);
+            prop_assert_eq!(spread.concepts.len(), listed.len());
+            prop_assert!(spread.exact);
+            // Every grid has its share, and every parameter of it the same.
+            for weighted in &spread.concepts {
+                let on = sizes.clone().filter(|&size| consistent(size).contains(&weighted.concept));
+                let chance: f64 = on.map(|size| {
+                    0.5_f64.powf((size - least) as f64) / (size as f64).powf(dimensions as f64)
+                }).sum();
+                prop_assert!((weighted.log_weight - chance.ln()).abs() < 1e-9);
             }
-            None => {
-                let Err(Failure::Contradiction(conflict)) = found else {
-                    panic!("{found:?}");
-                };
-                prop_assert!(conflict.minimal);
-                prop_assert!(spread.is_err());
-                // They cannot stand, and without any one of them the others can.
-                let stands = |answers: &[AnswerId]| (1..=FINEST).any(|size| {
-                    grid(dimensions, size).iter().any(|parameter| answers.iter().all(|answer| {
-                        facts[answer.0 as usize].holds(|atom| contains(parameter, atom))
-                    }))
-                });
-                prop_assert!(!stands(&conflict.answers));
-                for place in 0..conflict.answers.len() {
-                    let mut rest = conflict.answers.clone();
-                    rest.remove(place);
-                    prop_assert!(stands(&rest));
-                }
-                let known = [Cause::MemRep, Cause::States { bound: FINEST }];
-                prop_assert!(known.contains(&conflict.cause));
-                // All taken back, everything is consistent again.
-                for number in 0..facts.len() {
-                    class.retract(AnswerId(number as u32));
-                }
-                let sample = class.sample(1, 0, &mut Budget::unlimited()).unwrap();
-                prop_assert_eq!(sample.concepts[0].size(), 1);
+        } else {
+            let Err(Failure::Contradiction(conflict)) = found else {
+                panic!("{found:?}");
+            };
+            prop_assert!(conflict.minimal);
+            prop_assert!(spread.is_err());
+            // They cannot stand, and without any one of them the others can.
+            let stands = |answers: &[AnswerId]| (1..=FINEST).any(|size| {
+                grid(dimensions, size).iter().any(|parameter| answers.iter().all(|answer| {
+                    facts[answer.0 as usize].holds(|atom| contains(parameter, atom))
+                }))
+            });
+            prop_assert!(!stands(&conflict.answers));
+            for place in 0..conflict.answers.len() {
+                let mut rest = conflict.answers.clone();
+                rest.remove(place);
+                prop_assert!(stands(&rest));
             }
+            let known = [Cause::MemRep, Cause::States { bound: FINEST }];
+            prop_assert!(known.contains(&conflict.cause));
+            // All taken back, everything is consistent again.
+            for number in 0..facts.len() {
+                class.retract(AnswerId(number as u32));
+            }
+            let sample = class.sample(1, 0, &mut Budget::unlimited()).unwrap();
+            prop_assert_eq!(sample.concepts[0].size(), 1);
         }
     }
 
@@ -299,10 +296,10 @@ fn linear_rewards_are_a_monotone_family() {
         let reward = family.reward(&parameter);
         // Eq. 5.7, with the reflection that makes more accept more.
         let theta: Vec<f64> = parameter.coordinates().map(|at| 1.0 - at).collect();
-        for feature in 0..2 {
-            assert!((theta[feature] - (1.0 - reward.weights[feature]) / 2.0).abs() < 1e-12);
+        for (weight, theta) in reward.weights.iter().zip(&theta) {
+            assert!((theta - (1.0 - weight) / 2.0).abs() < 1e-12);
         }
-        assert!((theta[2] - (reward.threshold / bound + 1.0) / 2.0).abs() < 1e-12);
+        assert!((theta[2] - f64::midpoint(reward.threshold / bound, 1.0)).abs() < 1e-12);
         let back = family.parameter(&reward).unwrap();
         assert!(
             back.iter()
