@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use fantoccini::Client;
 
 use crate::page::{Page, script};
-use crate::teaching::Person;
 
 /// What a picture in a README may weigh, in bytes.
 const HEAVIEST: usize = 200_000;
 
 /// The width and height of a picture in pixels.
-const SIZE: (u32, u32) = (1280, 800);
+const SIZE: (u32, u32) = (1280, 960);
 
 /// The pictures that are still to be taken, by the page that they show.
 pub(crate) struct Album {
@@ -20,18 +19,13 @@ pub(crate) struct Album {
 }
 
 impl Album {
-    /// Takes none.
-    pub(crate) fn none() -> Self {
-        Self {
-            folder: None,
-            missing: Vec::new(),
-        }
-    }
-
     /// Takes all, if they are wished for; the page then gets their size.
     pub(crate) async fn wished(client: &Client) -> Self {
         let Some(folder) = std::env::var_os("MEMREP_SCREENSHOTS").map(PathBuf::from) else {
-            return Self::none();
+            return Self {
+                folder: None,
+                missing: Vec::new(),
+            };
         };
         std::fs::create_dir_all(&folder).unwrap();
         // A window is larger than its page by a frame that nobody knows before.
@@ -49,14 +43,14 @@ impl Album {
         }
     }
 
-    /// Takes a picture of the page, if it is one of those that are missing.
-    pub(crate) async fn see(&mut self, client: &Client, page: &Page, person: &mut Person) {
+    /// Takes a picture of the page, if it is one of those that are missing; a rule
+    /// only if it is the right one.
+    pub(crate) async fn see(&mut self, client: &Client, page: &Page, right: bool) {
         let Some(folder) = &self.folder else { return };
         let long = |word: &String| word.split_whitespace().count() > 1;
         let name = match page.kind.as_str() {
             "comparison" if page.words.iter().all(long) => "question",
-            // The last rule, which is right, makes the best picture.
-            "equivalence" if person.objection(page).is_none() => "equivalence",
+            "equivalence" if right => "equivalence",
             "done" => "result",
             _ => return,
         };

@@ -15,6 +15,7 @@ use serde::Deserialize;
 use crate::driver::{Browser, Wishes, with};
 use crate::house::House;
 use crate::page::{Page, fill, press, script};
+use crate::pictures::Album;
 use crate::teaching::{MANY, begin};
 
 /// The side of a cell in the drawing.
@@ -95,9 +96,17 @@ async fn the_robot_is_taught_from_drawn_walks() {
         let client = &browser.client;
         let house = House::build();
         let mut page = begin(browser, &house.at("/"), "robot-recharge").await;
+        let mut album = Album::wished(client).await;
         for _ in 0..MANY {
+            let objection = if page.kind == "equivalence" {
+                teacher.counterexample(&page.rule(&alphabet))
+            } else {
+                None
+            };
+            album.see(client, &page, objection.is_none()).await;
             match page.kind.as_str() {
                 "done" => {
+                    album.is_complete();
                     press(client, "#download-json").await;
                     let text = browser.downloaded(".json").await;
                     let learned = automata::format::json::read(&text).unwrap().dfa;
@@ -105,8 +114,7 @@ async fn the_robot_is_taught_from_drawn_walks() {
                     return;
                 }
                 "equivalence" => {
-                    let rule = page.rule(&alphabet);
-                    page = match teacher.counterexample(&rule) {
+                    page = match objection {
                         None => page.click(client, "button[value=correct]").await,
                         Some((word, label)) => {
                             let names: Vec<&str> = alphabet.spell(&word).collect();
