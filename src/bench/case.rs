@@ -1,12 +1,10 @@
-//! What a run of an experiment is about: a target, alone or in a setting.
+//! What a run of an experiment is about: a target, alone or in a situation.
 
 use std::sync::Arc;
 
-use automata::{Dfa, Word};
-
-use crate::concept::{Prior, PriorError, Situated, Template};
-use crate::identify::Settings;
+use crate::concept::{Prior, Template};
 use crate::oracle::{Target, TargetError};
+use crate::task::Situation;
 use crate::world::grid::{GridMap, Labelling};
 use crate::world::{Words, World};
 
@@ -28,21 +26,12 @@ const STEPS: usize = 40;
 /// Without a room, the symbols that a behaviour may have.
 const LONGEST: usize = 40;
 
-/// A target, alone or in a setting.
+/// A target, alone or in a situation.
 #[derive(Clone, Debug)]
 pub struct Case {
     name: String,
     target: Target,
-    setting: Option<Setting>,
-}
-
-/// Where behaviours come from, and what is known beforehand.
-#[derive(Clone, Debug)]
-pub struct Setting {
-    /// Where behaviours come from.
-    pub world: Arc<World>,
-    /// What is known beforehand.
-    pub prior: Prior,
+    situation: Option<Situation>,
 }
 
 impl From<Target> for Case {
@@ -50,7 +39,7 @@ impl From<Target> for Case {
         Self {
             name: target.name().to_owned(),
             target,
-            setting: None,
+            situation: None,
         }
     }
 }
@@ -62,7 +51,7 @@ impl Case {
     /// # Errors
     ///
     /// If the target cannot be made, which does not happen.
-    #[expect(clippy::missing_panics_doc, reason = "the setting is a constant")]
+    #[expect(clippy::missing_panics_doc, reason = "the situation is a constant")]
     pub fn robot() -> Result<Vec<Self>, TargetError> {
         let target = Target::named("robot")?;
         let alphabet = target.dfa().alphabet();
@@ -78,17 +67,17 @@ impl Case {
             World::Grid(room.expect("the room is a grid with a start")),
         ];
         let names = ["robot, RY known", "robot, RY known, in a room"];
-        let settings = worlds.into_iter().zip(names).map(|(world, name)| Self {
+        let situated = worlds.into_iter().zip(names).map(|(world, name)| Self {
             name: name.to_owned(),
             target: target.clone(),
-            setting: Some(Setting {
+            situation: Some(Situation {
                 world: Arc::new(world),
                 prior: prior.clone(),
             }),
         });
-        let settings: Vec<Self> = settings.collect();
+        let situated: Vec<Self> = situated.collect();
         Ok(std::iter::once(Self::from(target))
-            .chain(settings)
+            .chain(situated)
             .collect())
     }
 
@@ -104,36 +93,7 @@ impl Case {
 
     /// Where and beside what it is taught; none: all words can be shown, and
     /// nothing is known but the target's examples.
-    pub fn setting(&self) -> Option<&Setting> {
-        self.setting.as_ref()
-    }
-}
-
-impl Setting {
-    /// The class of what can be learned here.
-    ///
-    /// # Errors
-    ///
-    /// As [`Situated::new`].
-    pub fn class(&self, settings: Settings) -> Result<Situated, PriorError> {
-        Situated::new(Arc::clone(&self.world), self.prior.clone(), settings)
-    }
-
-    /// Whether it shows words as they are, however they go on.
-    pub fn is_boundless(&self) -> bool {
-        matches!(*self.world, World::Words(_))
-    }
-
-    /// A behaviour that tells what was learned from the target; none if they are
-    /// one in this setting.
-    ///
-    /// # Panics
-    ///
-    /// If the three are over different alphabets.
-    pub fn difference(&self, learned: &Dfa, target: &Dfa) -> Option<Word> {
-        let differ = self.prior.whole(learned).xor(target);
-        let open = differ.and_then(|differ| differ.and(self.prior.open()));
-        let open = open.expect("all are over one alphabet");
-        self.world.simplest(&open, 1).pop()
+    pub fn situation(&self) -> Option<&Situation> {
+        self.situation.as_ref()
     }
 }

@@ -26,7 +26,7 @@ mod table;
 mod times;
 mod trial;
 
-pub use case::{Case, Setting};
+pub use case::Case;
 pub use chart::ChartError;
 pub use clock::{process_cpu, thread_cpu};
 pub use contender::{BASE, CONTENDERS, Contender, KV, RIVALS, Rival};

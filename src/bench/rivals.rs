@@ -9,13 +9,15 @@ use automata::{Dfa, StateId, Symbol};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::case::{Case, Setting};
+use super::case::Case;
 use super::contender::RIVALS;
 use super::experiment::Plan;
 use super::run::Run;
 use crate::evidence::Fact;
 use crate::learner::Counts;
 use crate::oracle::Counterexamples;
+use crate::task::Situation;
+use crate::world::World;
 
 /// What Python runs; it tells its input and output itself.
 const SCRIPT: &str = include_str!("rivals.py");
@@ -75,7 +77,7 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
     let cases = plan.targets.iter().enumerate();
     let cases: Vec<(usize, &Case)> = cases
         .filter_map(|(place, subject)| Some((place, subject.language()?)))
-        .filter(|(_, case)| case.setting().is_none_or(Setting::is_boundless))
+        .filter(|(_, case)| case.situation().is_none_or(shows_all_words))
         .collect();
     let task = json!({
         "counterexamples": match plan.counterexamples {
@@ -130,6 +132,12 @@ pub fn run(plan: &Plan, python: &Path) -> Result<Vec<Run>, RivalsError> {
     Ok(plan.costs.iter().flat_map(at_cost).collect())
 }
 
+/// Whether words are shown as they are, however they go on: the rivals know no other
+/// world.
+fn shows_all_words(situation: &Situation) -> bool {
+    matches!(*situation.world, World::Words(_))
+}
+
 /// A target for the script.
 fn table(case: &Case) -> serde_json::Value {
     let target = case.target();
@@ -139,8 +147,8 @@ fn table(case: &Case) -> serde_json::Value {
         _ => None,
     });
     table["known"] = json!(known.collect::<Vec<_>>());
-    if let Some(setting) = case.setting() {
-        table["open"] = automaton(setting.prior.open());
+    if let Some(situation) = case.situation() {
+        table["open"] = automaton(situation.prior.open());
     }
     table
 }

@@ -9,7 +9,6 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
-use super::case::Setting;
 use super::clock::thread_cpu;
 use super::contender::Contender;
 use super::experiment::Plan;
@@ -19,6 +18,7 @@ use crate::concept::{DfaClass, Point, PriorError};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Counts, EQUIVALENCE_COST, Learner, Question};
 use crate::oracle::{MonotoneTarget, ScriptedTeacher, SituatedTeacher, Target, TeacherSettings};
+use crate::task::Situation;
 
 /// One run.
 #[derive(Clone, Debug)]
@@ -177,9 +177,9 @@ fn one(plan: &Plan, job: &Job) -> Result<Run, RunError> {
     let subject = &plan.targets[job.target];
     let run = match subject {
         Subject::Language(case) => {
-            let report = match case.setting() {
+            let report = match case.situation() {
                 None => alone(case.target(), config, settings, teacher),
-                Some(setting) => situated(case.target(), setting, config, settings, teacher),
+                Some(situation) => situated(case.target(), situation, config, settings, teacher),
             };
             report.map(|report| done(job, report))
         }
@@ -252,20 +252,20 @@ fn alone(
     Ok((report, equivalent))
 }
 
-/// A run in a setting, and whether what it learned agrees with the target there.
+/// A run in a situation, and whether what it learned agrees with the target there.
 /// That no question is settled or impossible is checked.
 fn situated(
     target: &Target,
-    setting: &Setting,
+    situation: &Situation,
     config: Config,
     settings: Settings,
     teacher: TeacherSettings,
 ) -> Result<(Report<Dfa>, bool), Fault> {
-    let class = setting.class(settings)?;
+    let class = situation.class(settings)?;
     let known = class.examples(target.known())?;
     let mut learner = Learner::new(class, config, known);
-    let open = setting.prior.open().clone();
-    let mut teacher = SituatedTeacher::new(Arc::clone(&setting.world), open, target, teacher);
+    let open = situation.prior.open().clone();
+    let mut teacher = SituatedTeacher::new(Arc::clone(&situation.world), open, target, teacher);
     let mut settled = None;
     let report = teach(
         &mut learner,
@@ -279,7 +279,7 @@ fn situated(
                 Question::Equivalence { .. } => Vec::new(),
             };
             let is_open = |word: &&Word| {
-                setting.prior.settled(word).is_none() && setting.world.is_feasible(word)
+                situation.prior.settled(word).is_none() && situation.world.is_feasible(word)
             };
             if !words.iter().all(is_open) {
                 settled.get_or_insert(asked.number);
@@ -290,6 +290,14 @@ fn situated(
         return Err(Fault::Settled { number });
     }
     let learned = report.learned.as_ref();
-    let equivalent = learned.is_some_and(|part| setting.difference(part, target.dfa()).is_none());
+    let equivalent = learned.is_some_and(|part| agrees(situation, part, target.dfa()));
     Ok((report, equivalent))
+}
+
+/// Whether nothing that is open and can happen tells what was learned from the
+/// target.
+fn agrees(situation: &Situation, learned: &Dfa, target: &Dfa) -> bool {
+    let differ = situation.prior.whole(learned).xor(target);
+    let open = differ.and_then(|differ| differ.and(situation.prior.open()));
+    open.is_ok_and(|open| !situation.world.has_word(&open))
 }

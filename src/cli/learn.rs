@@ -25,13 +25,13 @@ use self::values::Promise;
 use super::files::{self, Content, Format};
 use super::output::Output;
 use crate::bench::Report;
-use crate::concept::{DfaClass, Situated};
+use crate::concept::DfaClass;
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, Strategy};
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, TeacherSettings,
 };
-use crate::task::{Situation, TaskFile};
+use crate::task::{Costs, Situation, TaskFile};
 use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
@@ -193,13 +193,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (target, file) = target(args)?;
     let task = file.as_ref().map(|file| &file.task);
     let told = task.map(|task| task.costs).unwrap_or_default();
-    let membership_cost = args.membership_cost.or(told.membership).unwrap_or(4.0);
     let strategy = args.strategy.or(task.and_then(|task| task.strategy));
     let strategy = strategy.unwrap_or(Strategy::Bayes);
-    check_promises(args, strategy)?;
-    for path in [&args.save, &args.save_part].into_iter().flatten() {
-        files::check_folder(path)?;
-    }
+    check_options(args, strategy)?;
     let nothing_known = args.prior.is_empty()
         && args.suffices.is_empty()
         && task.is_none_or(|task| task.prior.is_empty());
@@ -220,13 +216,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             .or(file.as_ref().and_then(|file| file.max_states))
             .unwrap_or(usual_bound),
     };
-    let config = Config {
-        strategy,
-        membership_cost,
-        comparison_cost: args.comparison_cost.or(told.comparison).unwrap_or(1.0),
-        equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
-        ..config(args)
-    };
+    let config = config(args, strategy, told);
     let teacher = teacher(args);
     let known = target.known().to_vec();
     let mut beyond = None;
@@ -242,9 +232,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             let report = converse(args, &mut learner, &mut teacher, &words)?;
             (report, learner.doubts().cloned())
         }
-        Some(Situation { world, prior }) => {
+        Some(situation) => {
+            let class = situation.class(settings)?;
+            let Situation { world, prior } = situation;
             let open = prior.open().clone();
-            let class = Situated::new(Arc::clone(&world), prior.clone(), settings)?;
             let known = class.examples(&known).context(
                 "what is known of the target at the start does not fit; `--no-empty-word` starts with nothing",
             )?;
@@ -282,8 +273,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(status(&report))
 }
 
-/// Refuses what strategy and teacher cannot keep.
-fn check_promises(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
+/// Refuses what strategy and teacher cannot keep, and what could not be saved.
+fn check_options(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
+    for path in [&args.save, &args.save_part].into_iter().flatten() {
+        files::check_folder(path)?;
+    }
     if args.robust && strategy != Strategy::Bayes {
         anyhow::bail!("`--robust` is a part of strategy bayes: add `--strategy bayes`");
     }
@@ -300,13 +294,13 @@ fn check_promises(args: &Args, strategy: Strategy) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What the learner is told by the arguments alone.
-fn config(args: &Args) -> Config {
-    let membership_cost = args.membership_cost.unwrap_or(4.0);
+/// What the learner is told, where a task may have told costs.
+fn config(args: &Args, strategy: Strategy, told: Costs) -> Config {
+    let membership_cost = args.membership_cost.or(told.membership).unwrap_or(4.0);
     Config {
-        strategy: args.strategy.unwrap_or(Strategy::Bayes),
+        strategy,
         membership_cost,
-        comparison_cost: args.comparison_cost.unwrap_or(1.0),
+        comparison_cost: args.comparison_cost.or(told.comparison).unwrap_or(1.0),
         equivalence_cost: (args.equivalence_cost).unwrap_or(EQUIVALENCE_COST * membership_cost),
         shortest_counterexamples: args.promise.is_some(),
         robust: args.robust,

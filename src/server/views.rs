@@ -117,7 +117,12 @@ pub(crate) fn chips(task: &Task) -> Vec<Chip> {
         .map(|(i, symbol)| Chip {
             name: symbol.name.clone(),
             text: symbol.text().to_owned(),
-            letter: (symbol.letter).map_or(symbol.name.clone(), String::from),
+            letter: match (symbol.letter, &symbol.colour) {
+                (Some(letter), _) => letter.to_string(),
+                // A tile of a colour of its own is as wide as one letter.
+                (None, Some(_)) => symbol.name.chars().take(1).collect(),
+                (None, None) => symbol.name.clone(),
+            },
             colour: symbol.colour.as_ref().map(|colour| colour.hex().to_owned()),
             // The tones begin with the ones for danger and reward; bare letters
             // begin further on, so that they do not look like either.

@@ -34,13 +34,14 @@ impl Pupil {
             max_states: task.max_states,
         };
         let known = task.known(alphabet);
-        let Some(Situation { world, prior }) = situation else {
+        let Some(situation) = situation else {
             let class = DfaClass::new(alphabet.clone(), settings);
             let learner = Learner::new(class, setup.config(), known);
             return Ok(Self::Anywhere(Box::new(learner)));
         };
-        let class = Situated::new(world.clone(), prior.clone(), settings);
-        let class = class.map_err(|error| error.to_string())?;
+        let class = situation
+            .class(settings)
+            .map_err(|error| error.to_string())?;
         let known = class.examples(&known).map_err(|error| error.to_string())?;
         let learner = Learner::new(class, setup.config(), known);
         Ok(Self::Situated(Box::new(learner)))

@@ -23,6 +23,7 @@ pub use costs::{Costs, read_cost, read_strategy};
 pub use examples::{Example, Practice, Practised, read_word};
 pub use file::{Fault, TaskFile, Unusable};
 pub use reader::{Fields, Malformed};
+pub(crate) use situation::{LONGEST, STEPS};
 pub use situation::{PriorText, Rule, Situation, WorldText};
 pub use symbols::{Colour, SymbolText};
 

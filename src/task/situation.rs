@@ -13,15 +13,16 @@ use serde_json::Value;
 use super::automaton::{Automaton, over};
 use super::reader::{Faults, Fields, Malformed};
 use super::symbols::{SymbolText, marks};
-use crate::concept::{Prior, PriorError, Template, TemplateError};
+use crate::concept::{Prior, PriorError, Situated, Template, TemplateError};
+use crate::identify::Settings;
 use crate::world::grid::{Grid, GridError, GridMap, Labelling, MOST_STEPS};
 use crate::world::pool::PoolReader;
 use crate::world::{Words, World};
 
 /// Where no world is named, all words up to this length can be shown.
-const LONGEST: usize = 1000;
+pub(crate) const LONGEST: usize = 1000;
 /// The steps of a walk through a grid where a task does not tell.
-const STEPS: usize = 40;
+pub(crate) const STEPS: usize = 40;
 
 /// The world of a task, as it is written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -100,6 +101,15 @@ pub struct Situation {
 }
 
 impl Situation {
+    /// The class of what can be learned in it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Situated::new`].
+    pub fn class(&self, settings: Settings) -> Result<Situated, PriorError> {
+        Situated::new(Arc::clone(&self.world), self.prior.clone(), settings)
+    }
+
     /// Checks that the word can be shown, and that a label does not contradict what
     /// is known beforehand.
     pub(super) fn check(

@@ -12,14 +12,15 @@ use serde::{Deserialize, Serialize};
 
 use super::converse::converse;
 use super::teller::{Points, Rewards, Teller};
-use super::{Args, check_promises, config, status, summary, teacher};
+use super::{Args, check_options, config, status, summary, teacher};
 use crate::cli::files;
 use crate::concept::{
     ConceptClass, Failure, FiniteConcept, FiniteTable, LinearReward, LinearRewards, MonotoneClass,
 };
 use crate::evidence::{Budget, Fact};
-use crate::learner::Learner;
+use crate::learner::{Learner, Strategy};
 use crate::oracle::{ClassGoal, MonotoneTarget, ScriptedTeacher};
+use crate::task::Costs;
 
 /// The points per axis up to which rewards are looked for, where a file does not
 /// say.
@@ -35,7 +36,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<Option<ExitCode>> {
         return Ok(None);
     }
     refuse_words(args)?;
-    check_promises(args, config(args).strategy)?;
+    check_options(args, strategy(args))?;
     if let Some(target) = MonotoneTarget::named(name, args.seed)? {
         let class = || target.class();
         let parameter = target.parameter().clone();
@@ -99,7 +100,11 @@ where
     C: ConceptClass,
     L: Teller<Atom = C::Atom, Concept = C::Concept>,
 {
-    let mut learner = Learner::new(class(), config(args), Vec::new());
+    let mut learner = Learner::new(
+        class(),
+        config(args, strategy(args), Costs::default()),
+        Vec::new(),
+    );
     let goal = ClassGoal::new(class(), concept, args.teacher, args.seed);
     let mut teacher = ScriptedTeacher::of(goal, teacher(args));
     let report = converse(args, &mut learner, &mut teacher, teller)?;
@@ -107,8 +112,15 @@ where
         save(path, format, args, teller.concept_line(learned))?;
     }
     let doubts = learner.doubts();
-    let strategy = config(args).strategy;
-    summary::tell(args, strategy, &args.target, teller, &report, doubts, None)?;
+    summary::tell(
+        args,
+        strategy(args),
+        &args.target,
+        teller,
+        &report,
+        doubts,
+        None,
+    )?;
     Ok(status(&report))
 }
 
@@ -143,6 +155,11 @@ fn save(path: &Path, format: &str, args: &Args, concept: impl Serialize) -> anyh
     };
     let text = format!("{}\n", serde_json::to_string(&saved)?);
     files::write(path, &text).context("the learned concept was not saved")
+}
+
+/// The strategy that was asked for, or the usual one: no file tells another.
+fn strategy(args: &Args) -> Strategy {
+    args.strategy.unwrap_or(Strategy::Bayes)
 }
 
 /// The table of a file, and the concept of it that is named after a `#` or drawn.

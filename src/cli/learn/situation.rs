@@ -11,15 +11,10 @@ use automata::{Alphabet, Dfa};
 use super::Args;
 use crate::cli::files;
 use crate::concept::{Prior, Template, TemplateError};
-use crate::task::{Situation, TaskFile, WorldText};
+use crate::task::{LONGEST, STEPS, Situation, TaskFile, WorldText};
 use crate::world::grid::{Grid, GridMap};
 use crate::world::pool::{Pool, PoolReader};
 use crate::world::{Words, World};
-
-/// Without a grid all words up to this length can be shown.
-const LONGEST: usize = 1000;
-/// The steps of a walk where nothing else is said.
-const STEPS: usize = 40;
 
 /// The situation that the arguments and the task file describe; none if they
 /// describe none.
