@@ -26,8 +26,8 @@ pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish}
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use monotone::{
-    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MonotoneClass, Place,
-    Point,
+    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MOST_POINTS,
+    MonotoneClass, Place, Point,
 };
 pub use preorder::Preorder;
 pub use prior::{Applied, Prior, PriorError};

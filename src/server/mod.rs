@@ -6,11 +6,16 @@
 
 mod api;
 mod assets;
+mod behaviour;
+mod chart;
+mod drive;
 mod error;
 mod export;
 mod forms;
 mod guard;
 mod pages;
+mod past;
+mod rule;
 mod scene;
 mod start;
 mod teaching;

@@ -5,10 +5,11 @@ use axum::extract::State;
 use axum::response::{IntoResponse, Redirect, Response};
 
 use super::AppState;
+use super::behaviour::{Chip, chips};
 use super::error::{PageError, WebError};
 use super::forms::Faults;
 use super::pages::{Fields, read_form};
-use super::views::{Chip, Shell, chips, render};
+use super::views::{Shell, render};
 use crate::session::{Setup, Task, offered, ready};
 use crate::store::Listed;
 

@@ -18,8 +18,6 @@ mod rule;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use automata::{Alphabet, Dfa, Word};
-
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
@@ -28,17 +26,16 @@ pub use ready::{NAMES as READY_NAMES, offered, ready};
 use self::pupil::Pupil;
 use crate::evidence::AnswerId;
 use crate::learner::{Counts, Question, Reply, Round, Step};
-use crate::task::Situation;
 pub use crate::task::{
-    Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
-    Malformed, SymbolText, Task, read_word,
+    Atom, AtomText, Automaton, Concept, ConceptText, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES,
+    MAX_STATES, MAX_SYMBOLS, MAX_WORD, Malformed, SymbolText, Task, Universe, read_word,
 };
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
 pub struct Asked {
     /// The question.
-    pub question: Question<Word, Dfa>,
+    pub question: Question<Atom, Concept>,
     /// Whether the budget ended before the best one was found.
     pub hurried: bool,
     round: Option<Round>,
@@ -50,7 +47,7 @@ pub struct Standing {
     /// The number of the question that it answers.
     pub number: u32,
     /// The answer.
-    pub reply: Reply<Word>,
+    pub reply: Reply<Atom>,
     /// What the learner did next, once it has; none for a mended answer.
     then: Option<Position>,
 }
@@ -64,8 +61,8 @@ pub enum Position {
     Asking(u32),
     /// Some standing answers contradict each other.
     Conflict(Conflict),
-    /// The teacher agreed with this automaton, or the part of it that is learned.
-    Done(Dfa),
+    /// The teacher agreed with this rule, or the part of it that is learned.
+    Done(Concept),
 }
 
 /// A log that cannot be folded: it was not written by this program, or by a
@@ -83,10 +80,8 @@ pub struct Corrupt {
 pub struct Session {
     task: Task,
     setup: Setup,
-    alphabet: Alphabet,
-    /// None where all words are asked about, and nothing is known beforehand.
-    situation: Option<Situation>,
-    learner: Pupil,
+    universe: Universe,
+    learner: Box<dyn Pupil>,
     asked: BTreeMap<u32, Asked>,
     standing: Vec<Standing>,
     withdrawn: BTreeSet<u32>,
@@ -140,12 +135,10 @@ impl Session {
     }
 
     fn new(task: Task, setup: Setup) -> Result<Self, String> {
-        let alphabet = task.alphabet();
-        let situation = task.situation().map_err(|error| error.to_string())?;
+        let universe = task.universe().map_err(|error| error.to_string())?;
         Ok(Self {
-            learner: Pupil::new(&task, situation.as_ref(), &setup, &alphabet)?,
-            situation,
-            alphabet,
+            learner: pupil::new(&task, &universe, &setup)?,
+            universe,
             task,
             setup,
             asked: BTreeMap::new(),
@@ -184,7 +177,7 @@ impl Session {
                 if *number != self.next_number() {
                     return Err(format!("question {number} comes out of turn"));
                 }
-                let question = question.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let question = question.read(&self.universe).map_err(|e| e.to_string())?;
                 let asked = Asked {
                     question,
                     hurried: *hurried,
@@ -198,7 +191,7 @@ impl Session {
                 if self.position != Position::Asking(*number) {
                     return Err(format!("question {number} is not open"));
                 }
-                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 self.record(*number, &reply)?;
                 self.standing.push(Standing {
                     number: *number,
@@ -214,7 +207,7 @@ impl Session {
                 Ok(())
             }
             Event::Changed { number, reply } => {
-                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 let Some(standing) = self.standing.iter_mut().find(|s| s.number == *number) else {
                     return Err(format!("question {number} has no standing answer"));
                 };
@@ -237,7 +230,8 @@ impl Session {
             }
             Event::Done { hypothesis } => {
                 self.expect_thinking()?;
-                let hypothesis = hypothesis.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let hypothesis = self.universe.parse_rule(hypothesis);
+                let hypothesis = hypothesis.map_err(|e| e.to_string())?;
                 self.arrive(Position::Done(hypothesis));
                 Ok(())
             }
@@ -259,13 +253,13 @@ impl Session {
                 hurried,
             } => Event::Asked {
                 number: self.next_number(),
-                question: QuestionText::of(&question, &self.alphabet),
+                question: QuestionText::of(&question, &self.universe),
                 round,
                 hurried,
             },
             Step::Conflict(contradiction) => Event::conflict(&contradiction),
             Step::Done { hypothesis } => Event::Done {
-                hypothesis: Automaton::of(&hypothesis),
+                hypothesis: self.universe.rule(&hypothesis),
             },
         })
     }
@@ -293,7 +287,7 @@ impl Session {
         self.awaiting = answer;
     }
 
-    fn record(&mut self, number: u32, reply: &Reply<Word>) -> Result<(), String> {
+    fn record(&mut self, number: u32, reply: &Reply<Atom>) -> Result<(), String> {
         let Some(asked) = self.asked.get(&number) else {
             return Err(format!("question {number} was never asked"));
         };
@@ -320,8 +314,7 @@ impl Session {
 
     /// A learner that was told the standing answers as they are now, in order.
     fn rebuild(&mut self) -> Result<(), String> {
-        let situation = self.situation.as_ref();
-        self.learner = Pupil::new(&self.task, situation, &self.setup, &self.alphabet)?;
+        self.learner = pupil::new(&self.task, &self.universe, &self.setup)?;
         let replies: Vec<_> = self
             .standing
             .iter()
@@ -346,9 +339,9 @@ impl Session {
         &self.setup
     }
 
-    /// The alphabet of the task's symbols.
-    pub fn alphabet(&self) -> &Alphabet {
-        &self.alphabet
+    /// The behaviours of the task, and the rules that can be learned of them.
+    pub fn universe(&self) -> &Universe {
+        &self.universe
     }
 
     /// Where the session stands.
