@@ -178,7 +178,7 @@ fn contradictory_answers_are_shown_and_mending_one_goes_on() {
             Question::Equivalence { hypothesis } => {
                 // Twice the same word, once with either label.
                 let atom = Atom::Word(Word::empty());
-                let label = !accepts(&hypothesis, &atom);
+                let label = !accepts(hypothesis, &atom);
                 seen += 1;
                 Reply::Counterexample { atom, label }
             }

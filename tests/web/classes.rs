@@ -80,7 +80,7 @@ fn wrong_about_drives(hypothesis: &Value) -> Option<Value> {
     wrong
         .filter(|(accepted, drive)| *accepted != comfortable(drive))
         .map(|(_, drive)| drive)
-        .last()
+        .next_back()
 }
 
 /// What is learned is what was meant, also across restarts, and it is exported.
@@ -261,11 +261,31 @@ async fn limits_are_refuted_by_a_form() {
     assert_ne!(question["number"], number);
 }
 
-/// What is wrong with a class is named with its place, and no session is made.
-#[tokio::test]
-async fn faulty_classes_make_no_session() {
-    let axis = json!({"name": "time", "unit": "s", "best": 10, "worst": 60});
+/// Checks that such a class makes no session, and that its fault is told at this field.
+async fn refused(class: Value, more: Value, field: &str, part: &str) {
     let site = Site::in_memory();
+    let mut task = json!({"class": class});
+    for (key, value) in more.as_object().unwrap() {
+        task[key] = value.clone();
+    }
+    let reply = site.post("/api/v1/sessions", json!({"task": task})).await;
+    assert_eq!(
+        reply.status,
+        StatusCode::UNPROCESSABLE_ENTITY,
+        "{task}: {}",
+        reply.text
+    );
+    let error = &reply.json()["error"];
+    assert_eq!(error["field"], field, "{error}");
+    let message = error["message"].as_str().unwrap().to_lowercase();
+    assert!(message.contains(&part.to_lowercase()), "{error}");
+    let sessions = site.get("/api/v1/sessions").await.json();
+    assert_eq!(sessions["sessions"], json!([]));
+}
+
+#[tokio::test]
+async fn faulty_axes_make_no_session() {
+    let axis = json!({"name": "time", "unit": "s", "best": 10, "worst": 60});
     for (class, more, field, part) in [
         (
             json!({"kind": "odd"}),
@@ -333,6 +353,14 @@ async fn faulty_classes_make_no_session() {
             "task.examples",
             "no rule",
         ),
+    ] {
+        refused(class, more, field, part).await;
+    }
+}
+
+#[tokio::test]
+async fn faulty_tables_and_rewards_make_no_session() {
+    for (class, more, field, part) in [
         (
             json!({"kind": "finite"}),
             json!({}),
@@ -376,24 +404,6 @@ async fn faulty_classes_make_no_session() {
             "features",
         ),
     ] {
-        let mut task = json!({"class": class});
-        for (key, value) in more.as_object().unwrap() {
-            task[key] = value.clone();
-        }
-        let reply = site.post("/api/v1/sessions", json!({"task": task})).await;
-        assert_eq!(
-            reply.status,
-            StatusCode::UNPROCESSABLE_ENTITY,
-            "{task}: {}",
-            reply.text
-        );
-        let error = &reply.json()["error"];
-        assert_eq!(error["field"], field, "{error}");
-        let message = error["message"].as_str().unwrap().to_lowercase();
-        assert!(message.contains(&part.to_lowercase()), "{error}");
+        refused(class, more, field, part).await;
     }
-    assert_eq!(
-        site.get("/api/v1/sessions").await.json()["sessions"],
-        json!([])
-    );
 }
