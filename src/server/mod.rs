@@ -15,6 +15,7 @@ mod forms;
 mod guard;
 mod pages;
 mod past;
+mod practice;
 mod rule;
 mod scene;
 mod start;

@@ -16,7 +16,7 @@ use super::forms::{Faults, Form};
 use super::past::PastView;
 use super::rule::RuleView;
 use super::views::{Bar, Shell, render};
-use super::{export, start};
+use super::{export, practice, start};
 use crate::learner::{Counts, Question, Reply};
 use crate::session::{Concept, Decision, MAX_STATES, Position, Session, Universe};
 use crate::store::SessionId;
@@ -39,6 +39,10 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/changes", post(change))
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/history", get(history))
+        .route(
+            "/sessions/{id}/practice",
+            get(practice::show).post(practice::answer),
+        )
         .route("/sessions/{id}/automaton.svg", get(drawing))
 }
 

@@ -67,27 +67,33 @@ impl PastView {
                 ("Is this the rule?", word, None, &[])
             }
         };
-        let said = match reply {
-            Reply::Skip => "nothing, you skipped it",
-            Reply::Correct => "this is right",
-            Reply::Counterexample { label: true, .. } => "no, this should be accepted",
-            Reply::Counterexample { label: false, .. } => "no, this should not be accepted",
-            _ => choices
-                .iter()
-                .find(|(_, _, r)| r == reply)
-                .map_or("", |(_, text, _)| text),
-        };
         Some(Self {
             number,
             asked,
             first,
             second,
-            said: said.to_owned(),
+            said: said(reply).to_owned(),
             others: choices
                 .iter()
                 .filter(|(_, _, r)| r != reply)
                 .map(|&(value, text, _)| Choice { value, text })
                 .collect(),
         })
+    }
+}
+
+/// What was said, for people.
+pub(crate) fn said(reply: &Reply<Atom>) -> &'static str {
+    match reply {
+        Reply::Skip => "nothing, you skipped it",
+        Reply::Correct => "this is right",
+        Reply::Counterexample { label: true, .. } => "no, this should be accepted",
+        Reply::Counterexample { label: false, .. } => "no, this should not be accepted",
+        Reply::Accept | Reply::Reject | Reply::Compared(_) => {
+            let mut choices = JUDGEMENTS.iter().chain(&COMPARISONS);
+            choices
+                .find(|(_, _, choice)| choice == reply)
+                .map_or("", |(_, text, _)| text)
+        }
     }
 }

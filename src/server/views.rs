@@ -42,7 +42,10 @@ pub(crate) struct Bar {
     pub(crate) id: String,
     pub(crate) title: String,
     pub(crate) answered: usize,
-    pub(crate) guidelines: String,
+    /// Paragraph by paragraph.
+    pub(crate) guidelines: Vec<String>,
+    /// Whether there is a question to practise with.
+    pub(crate) practice: bool,
     /// The last standing answer.
     pub(crate) undo: Option<u32>,
 }
@@ -55,10 +58,32 @@ impl Bar {
             id,
             title: task.title.clone(),
             answered: (counts.membership + counts.comparison + counts.equivalence) as usize,
-            guidelines: task.guidelines.clone(),
+            guidelines: paragraphs(&task.guidelines),
+            practice: task.practice.is_some(),
             undo: session.standing().last().map(|s| s.number),
         }
     }
+}
+
+/// Text in which an empty line ends a paragraph, and any other line goes on.
+fn paragraphs(text: &str) -> Vec<String> {
+    let mut paragraphs = vec![String::new()];
+    for line in text.lines().map(str::trim) {
+        let Some(last) = paragraphs.last_mut() else {
+            continue;
+        };
+        match (line.is_empty(), last.is_empty()) {
+            (true, true) => {}
+            (true, false) => paragraphs.push(String::new()),
+            (false, true) => last.push_str(line),
+            (false, false) => {
+                last.push(' ');
+                last.push_str(line);
+            }
+        }
+    }
+    paragraphs.retain(|paragraph| !paragraph.is_empty());
+    paragraphs
 }
 
 #[derive(Template)]

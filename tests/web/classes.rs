@@ -407,3 +407,34 @@ async fn faulty_tables_and_rewards_make_no_session() {
         refused(class, more, field, part).await;
     }
 }
+
+/// The practice question is asked, answered and explained, and nothing is kept of it.
+#[tokio::test]
+async fn the_practice_question_is_explained_and_not_kept() {
+    let site = Site::in_memory();
+    let session = create(&site, json!({"task": "car"})).await;
+    let log = site.get(&format!("{session}/log")).await.text;
+    let pages = session.replace("/api/v1", "");
+    let page = site.get(&pages).await;
+    assert!(page.text.contains(&format!("href=\"{pages}/practice\"")));
+    let practice = format!("{pages}/practice");
+    let asked = site.get(&practice).await;
+    assert_eq!(asked.main("data-kind"), "practice");
+    assert_eq!(asked.text.matches("class=\"drive\"").count(), 2);
+    assert!(!asked.text.contains("touch the other car"));
+    for (answer, verdict) in [
+        ("first", "Yes, that is what is meant."),
+        ("second", "What is meant is: A is better."),
+    ] {
+        let told = site.form(&practice, &[("answer", answer)]).await;
+        assert_eq!(told.status, StatusCode::OK);
+        assert!(told.text.contains(verdict), "{}", told.text);
+        assert!(told.text.contains("touch the other car"));
+    }
+    let nonsense = site.form(&practice, &[("answer", "maybe")]).await;
+    assert_eq!(nonsense.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert_eq!(site.get(&format!("{session}/log")).await.text, log);
+    let without = create(&site, json!({"task": "tomita:1"})).await;
+    let none = format!("{}/practice", without.replace("/api/v1", ""));
+    assert_eq!(site.get(&none).await.status, StatusCode::NOT_FOUND);
+}
