@@ -41,6 +41,11 @@ const LEGS: usize = 16;
 const MOST: usize = 6;
 const AGREEING: usize = 5;
 const NEAR: f64 = 3.0;
+/// So many steps of words on tables are taken after an answer, more or less: where
+/// what was heard is long, chains go on for fewer legs, and less often.
+const STEPS: usize = 150_000_000;
+/// Fewer legs than these are never made.
+const FEWEST: usize = 4;
 /// After so many answers in a row on which they never did, they are astray.
 const PATIENCE: usize = 12;
 /// A ladder is stuck if the best automaton in it is less likely than that of
@@ -161,10 +166,11 @@ impl Particles {
         let mut mover = Mover::default();
         let mut visits = Visits::default();
         let mut guiding = None;
-        for _ in 0..MOST {
+        let (rounds, legs) = effort(self.script.nodes());
+        for _ in 0..rounds {
             for (number, ladder) in machines.iter_mut().enumerate() {
                 let mut visit = |machine: &Machine| visits.add(number, machine);
-                travel(ladder, &mut mover, &ground, &mut rng, &mut visit);
+                travel(ladder, legs, &mut mover, &ground, &mut rng, &mut visit);
             }
             if visits.agree() {
                 break;
@@ -203,16 +209,26 @@ impl Particles {
     }
 }
 
-/// Lets the chains of a ladder make their moves, and shows where the cold ones
-/// come to.
+/// How often the chains may go on, and for how many legs each time, where what was
+/// heard is a tree with so many nodes.
+fn effort(nodes: usize) -> (usize, usize) {
+    let leg = LADDERS * (COLD * LEG[0] + (LEVELS.len() - COLD) * LEG[1]) * nodes;
+    let legs = STEPS / leg.max(1);
+    let rounds = (legs / LEGS).clamp(1, MOST);
+    (rounds, legs.clamp(FEWEST, LEGS))
+}
+
+/// Lets the chains of a ladder make their moves, so many legs, and shows where the
+/// cold ones come to.
 fn travel(
     ladder: &mut [Machine; LEVELS.len()],
+    legs: usize,
     mover: &mut Mover,
     ground: &Ground<'_>,
     rng: &mut ChaCha8Rng,
     visit: &mut impl FnMut(&Machine),
 ) {
-    for leg in 0..LEGS {
+    for leg in 0..legs {
         for (level, machine) in ladder.iter_mut().enumerate() {
             let cold = level < COLD;
             for step in 0..LEG[usize::from(!cold)] {

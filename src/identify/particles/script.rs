@@ -6,12 +6,12 @@ use super::LARGEST;
 use crate::belief::{End, Ending, Heard, Tally, Verdict, compared};
 use crate::evidence::Fact;
 
-/// A node of the tree; parents come before their children.
+/// A node of the tree but its root.
 #[derive(Clone, Copy, Debug)]
 struct Node {
+    number: u32,
     parent: u32,
     symbol: u32,
-    depth: u32,
 }
 
 /// No state.
@@ -30,7 +30,11 @@ pub(crate) struct Run {
 #[derive(Clone, Debug)]
 pub(crate) struct Script {
     symbols: usize,
-    nodes: Vec<Node>,
+    /// The nodes by depth, from 1. Those of a depth do not wait for each other, and a
+    /// processor steps on several at once.
+    levels: Vec<Vec<Node>>,
+    /// The number of nodes, the root among them.
+    nodes: usize,
     /// `children[node * symbols + symbol]`, 0 for none.
     children: Vec<u32>,
     labels: Vec<(u32, bool, bool)>,
@@ -42,11 +46,8 @@ impl Script {
     pub(crate) fn new(symbols: usize) -> Self {
         Self {
             symbols,
-            nodes: vec![Node {
-                parent: 0,
-                symbol: 0,
-                depth: 0,
-            }],
+            levels: Vec::new(),
+            nodes: 1,
             children: vec![0; symbols],
             labels: Vec::new(),
             comparisons: Vec::new(),
@@ -66,24 +67,36 @@ impl Script {
     }
 
     fn insert(&mut self, word: &Word) -> u32 {
-        word.iter().fold(0, |node, symbol| {
-            let place = node as usize * self.symbols + symbol.index();
+        let mut parent = 0;
+        for (depth, symbol) in word.iter().enumerate() {
+            let place = parent as usize * self.symbols + symbol.index();
             if self.children[place] == 0 {
-                self.children[place] = self.nodes.len() as u32;
-                self.nodes.push(Node {
-                    parent: node,
-                    symbol: symbol.index() as u32,
-                    depth: self.nodes[node as usize].depth + 1,
-                });
+                let number = self.nodes as u32;
+                self.nodes += 1;
+                self.children[place] = number;
                 self.children.extend(std::iter::repeat_n(0, self.symbols));
+                if self.levels.len() == depth {
+                    self.levels.push(Vec::new());
+                }
+                self.levels[depth].push(Node {
+                    number,
+                    parent,
+                    symbol: symbol.index() as u32,
+                });
             }
-            self.children[place]
-        })
+            parent = self.children[place];
+        }
+        parent
     }
 
     /// The number of things heard.
     pub(crate) fn len(&self) -> usize {
         self.labels.len() + self.comparisons.len()
+    }
+
+    /// The number of different beginnings of words heard.
+    pub(crate) fn nodes(&self) -> usize {
+        self.nodes
     }
 
     /// Runs every word on the table: where it ends, and how long it did well.
@@ -93,8 +106,8 @@ impl Script {
             !output[*state] && delta[row].iter().all(|&t| usize::from(t) == *state)
         };
         let sink = (0..output.len()).find(is_sink).map_or(NOWHERE, |s| s as u8);
-        run.at.resize(self.nodes.len(), 0);
-        run.progress.resize(self.nodes.len(), 0);
+        run.at.resize(self.nodes, 0);
+        run.progress.resize(self.nodes, 0);
         let step = |state: u8, depth| Step {
             depth,
             accepting: output[usize::from(state)],
@@ -102,12 +115,15 @@ impl Script {
         };
         run.at[0] = 0;
         run.progress[0] = step(0, 0).progress(None);
-        for (number, node) in self.nodes.iter().enumerate().skip(1) {
-            let parent = node.parent as usize;
-            let edge = usize::from(run.at[parent]) * self.symbols + node.symbol as usize;
-            let state = delta[edge];
-            run.at[number] = state;
-            run.progress[number] = step(state, node.depth).progress(Some(run.progress[parent]));
+        for (depth, nodes) in (1..).zip(&self.levels) {
+            for node in nodes {
+                let parent = node.parent as usize;
+                let edge = usize::from(run.at[parent]) * self.symbols + node.symbol as usize;
+                let state = delta[edge];
+                let before = run.progress[parent];
+                run.at[node.number as usize] = state;
+                run.progress[node.number as usize] = step(state, depth).progress(Some(before));
+            }
         }
     }
 
