@@ -17,6 +17,7 @@ mod ready;
 mod rule;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use automata::{Alphabet, Dfa, Word};
 
@@ -33,6 +34,7 @@ pub use crate::task::{
     Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
     Malformed, SymbolText, Task, read_word,
 };
+use crate::world::World;
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
@@ -113,6 +115,16 @@ impl Session {
     ///
     /// Names the first entry that makes no sense.
     pub fn replay(events: &[Event]) -> Result<Self, Corrupt> {
+        Self::replay_in(None, events)
+    }
+
+    /// Folds a whole log, in this world where its task's is an
+    /// [upload](Task::upload).
+    ///
+    /// # Errors
+    ///
+    /// Names the first entry that makes no sense.
+    pub fn replay_in(world: Option<Arc<World>>, events: &[Event]) -> Result<Self, Corrupt> {
         let corrupt = |message: &str| Corrupt {
             entry: 0,
             message: message.to_owned(),
@@ -131,7 +143,7 @@ impl Session {
                 "it is of version {log}, and this memrep reads version {LOG_VERSION}: use the memrep that wrote it"
             )));
         }
-        let fresh = Self::new(Task::clone(task), setup.clone());
+        let fresh = Self::new(Task::clone(task), setup.clone(), world);
         let mut session = fresh.map_err(|message| corrupt(&message))?;
         for event in rest {
             session.apply(event)?;
@@ -139,9 +151,9 @@ impl Session {
         Ok(session)
     }
 
-    fn new(task: Task, setup: Setup) -> Result<Self, String> {
+    fn new(task: Task, setup: Setup, world: Option<Arc<World>>) -> Result<Self, String> {
         let alphabet = task.alphabet();
-        let situation = task.situation().map_err(|error| error.to_string())?;
+        let situation = task.situation_in(world).map_err(|error| error.to_string())?;
         Ok(Self {
             learner: Pupil::new(&task, situation.as_ref(), &setup, &alphabet)?,
             situation,

@@ -75,6 +75,14 @@ impl Pupil {
         }
     }
 
+    /// What nothing that can be shown tells about this hypothesis.
+    pub(super) fn beyond(&self, hypothesis: &Dfa) -> Option<Word> {
+        match self {
+            Self::Anywhere(_) => None,
+            Self::Situated(learner) => learner.class().beyond(hypothesis),
+        }
+    }
+
     pub(super) fn counts(&self) -> Counts {
         match self {
             Self::Anywhere(learner) => learner.counts(),

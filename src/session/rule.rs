@@ -1,7 +1,7 @@
 //! What a session's automaton comes to: the part that is learned, and the whole beside
 //! what is known beforehand.
 
-use automata::Dfa;
+use automata::{Dfa, Word};
 
 use super::{Position, Session};
 use crate::learner::Question;
@@ -33,6 +33,16 @@ impl Session {
     /// Between those there is none: the last one shown was refuted.
     pub fn hypothesis(&self) -> Option<Dfa> {
         self.learned().map(|learned| self.whole(learned))
+    }
+
+    /// A behaviour that would decide what nothing in the world of the task does about
+    /// the learned part, once the teacher has agreed with it; none where all is
+    /// decided.
+    pub fn beyond(&self) -> Option<Word> {
+        match &self.position {
+            Position::Done(learned) => self.learner.beyond(learned),
+            _ => None,
+        }
     }
 
     /// The part of [`Self::hypothesis`] that is learned.

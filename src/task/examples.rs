@@ -143,6 +143,40 @@ pub(super) fn read(
     kept
 }
 
+/// Checks that the examples and the practice question are possible in the situation.
+///
+/// # Errors
+///
+/// Names the first that is not.
+pub(super) fn check(
+    examples: &[Example],
+    practice: Option<&Practice>,
+    alphabet: &Alphabet,
+    situation: &Situation,
+) -> Result<(), Malformed> {
+    let one = |names: &[String], label, path: &str| {
+        let word = alphabet
+            .word(names)
+            .map_err(|error| Malformed::new(path, error.to_string()))?;
+        situation.check(&word, label, path)
+    };
+    for (place, example) in examples.iter().enumerate() {
+        one(
+            &example.word,
+            Some(example.label),
+            &format!("examples[{place}]"),
+        )?;
+    }
+    match practice.map(|practice| &practice.asks) {
+        None => Ok(()),
+        Some(Practised::Judgement { word }) => one(word, None, "practice.word"),
+        Some(Practised::Comparison { first, second }) => {
+            one(first, None, "practice.first")?;
+            one(second, None, "practice.second")
+        }
+    }
+}
+
 fn names(word: &Word, alphabet: &Alphabet) -> Vec<String> {
     alphabet.spell(word).map(str::to_owned).collect()
 }

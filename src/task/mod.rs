@@ -14,6 +14,8 @@ mod reader;
 mod situation;
 mod symbols;
 
+use std::sync::Arc;
+
 use automata::{Alphabet, Dfa, Symbol, Word};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -24,7 +26,7 @@ pub use examples::{Example, Practice, Practised, read_word};
 pub use file::{Fault, TaskFile, Unusable};
 pub use reader::{Fields, Malformed};
 pub(crate) use situation::{LONGEST, STEPS};
-pub use situation::{PriorText, Rule, Situation, WorldText};
+pub use situation::{PriorText, Rule, Situation, Source, WorldText};
 pub use symbols::{Colour, SymbolText};
 
 use self::reader::Faults;
@@ -33,6 +35,7 @@ use crate::concept::Prior;
 use crate::evidence::Fact;
 use crate::learner::Strategy;
 use crate::oracle::Target;
+use crate::world::World;
 
 /// The largest number of symbols a taught alphabet may have: more cannot be
 /// offered as buttons.
@@ -127,6 +130,15 @@ impl Task {
         }
     }
 
+    /// The content of a task file, TOML, as [`Self::from_json`] reads it.
+    ///
+    /// # Errors
+    ///
+    /// Says where it ceases to be TOML.
+    pub fn toml_content(text: &str) -> Result<Value, Fault> {
+        file::content(text)
+    }
+
     /// The alphabet of the symbols' names.
     ///
     /// # Panics
@@ -159,14 +171,30 @@ impl Task {
     ///
     /// # Errors
     ///
-    /// If the task was put together by hand, or its recordings are not what they
-    /// were when it was read.
+    /// If the task was put together by hand, its recordings are not what they
+    /// were when it was read, or they are an upload: [`Self::situation_in`].
     pub fn situation(&self) -> Result<Option<Situation>, Malformed> {
-        if self.world.is_none() && self.prior.is_empty() {
+        self.situation_in(None)
+    }
+
+    /// The same with this world, in place of the one that the task tells.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::situation`], or if nothing is left to learn in the world.
+    pub fn situation_in(&self, world: Option<Arc<World>>) -> Result<Option<Situation>, Malformed> {
+        if world.is_none() && self.world.is_none() && self.prior.is_empty() {
             return Ok(None);
         }
         let alphabet = self.alphabet();
-        let world = situation::build_world(self.world.as_ref(), &self.symbols, &alphabet)?;
+        let world = match world {
+            Some(world) => world,
+            None => Arc::new(situation::build_world(
+                self.world.as_ref(),
+                &self.symbols,
+                &alphabet,
+            )?),
+        };
         let rules = |rules: &[Rule]| -> Result<Vec<Dfa>, Malformed> {
             rules.iter().map(|rule| rule.dfa(&alphabet)).collect()
         };
@@ -174,6 +202,35 @@ impl Task {
         let prior = Prior::new(&alphabet, holds, suffices)
             .map_err(|error| Malformed::new("prior", error.to_string()))?;
         situation::build(world, prior, "prior").map(Some)
+    }
+
+    /// Checks what could not be when the task was read, because its world is an
+    /// upload: that its examples and its practice question are recorded, and that
+    /// what is known beforehand leaves something to learn.
+    ///
+    /// # Errors
+    ///
+    /// Names the first that is not.
+    pub fn check_in(&self, world: Arc<World>) -> Result<(), Malformed> {
+        let Some(situation) = self.situation_in(Some(world))? else {
+            return Ok(());
+        };
+        examples::check(
+            &self.examples,
+            self.practice.as_ref(),
+            &self.alphabet(),
+            &situation,
+        )
+    }
+
+    /// The name of the upload that the task's world is, if it is one.
+    pub fn upload(&self) -> Option<&str> {
+        match &self.world {
+            Some(WorldText::Pool {
+                source: Source::Upload(upload),
+            }) => Some(upload),
+            _ => None,
+        }
     }
 
     /// What stands for each symbol in the map of a grid.
@@ -237,10 +294,12 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
         && lettered
         && world.is_some() == told.is_some()
         && (world.is_some() || !text.is_empty())
+        && !situation::is_uploaded(world.as_ref())
     {
         let path = if text.is_empty() { "world" } else { "prior" };
         let world = situation::build_world(world.as_ref(), &symbols, &alphabet);
-        let whole = world.and_then(|world| situation::build(world, prior.clone(), path));
+        let whole =
+            world.and_then(|world| situation::build(Arc::new(world), prior.clone(), path));
         built = faults.keep(whole);
     }
     let situation = built.as_ref();
