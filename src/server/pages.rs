@@ -13,7 +13,7 @@ use super::api::session_id;
 use super::error::{PageError, WebError};
 use super::forms::{Faults, Form};
 use super::views::{Bar, Chip, PastView, RuleView, Shell, WordView, chips, render};
-use super::{export, start};
+use super::{export, media, start};
 use crate::learner::{Counts, Question, Reply};
 use crate::session::{Decision, MAX_STATES, Position, Session};
 use crate::store::SessionId;
@@ -21,11 +21,10 @@ use crate::store::SessionId;
 /// A form's body, or why it is none.
 pub(crate) type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
 
-/// All routes of the pages.
+/// All routes of the pages but that of uploads.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
         .route("/", get(start::show))
-        .route("/sessions", post(start::begin))
         .route("/sessions/{id}", get(show))
         .route("/sessions/{id}/answers", post(answer))
         .route("/sessions/{id}/retractions", post(retract))
@@ -33,6 +32,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/history", get(history))
         .route("/sessions/{id}/automaton.svg", get(drawing))
+        .route("/sessions/{id}/media/{*path}", get(media::show))
 }
 
 pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {

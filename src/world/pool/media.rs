@@ -88,6 +88,19 @@ impl Media {
         }
     }
 
+    /// The files that it needs, each with the path of the field that names it.
+    pub fn named(&self) -> impl Iterator<Item = (String, &str)> {
+        let listed = matches!(self, Self::Frames { .. });
+        self.files().enumerate().map(move |(place, path)| {
+            let field = if listed {
+                format!("media.paths[{place}]")
+            } else {
+                "media.path".to_owned()
+            };
+            (field, path)
+        })
+    }
+
     /// The files that it needs.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         let paths = match self {
