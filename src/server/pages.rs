@@ -17,6 +17,7 @@ use super::{export, media, start};
 use crate::learner::{Counts, Question, Reply};
 use crate::session::{Decision, MAX_STATES, Position, Session};
 use crate::store::SessionId;
+use crate::world::World;
 
 /// A form's body, or why it is none.
 pub(crate) type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
@@ -108,6 +109,9 @@ struct DonePage {
     counts: Counts,
     files: Vec<Download>,
     agreed: Option<u32>,
+    /// What nothing that can be shown decides; and whether that is recordings.
+    beyond: Option<WordView>,
+    recorded: bool,
 }
 
 /// What a person had typed when something was wrong with it.
@@ -197,6 +201,8 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
             rule: RuleView::of(&session.whole(hypothesis), task),
             counts: session.counts(),
             files: downloads(id),
+            beyond: session.beyond().map(|word| WordView::of(&word, session)),
+            recorded: matches!(session.world(), Some(World::Pool(_))),
             agreed: session
                 .standing()
                 .iter()

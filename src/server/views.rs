@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::assets;
 use super::error::WebError;
+use super::recording::RecordingView;
 use super::scene::{Look, Scene};
 use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
@@ -100,6 +101,7 @@ impl Chip {
 /// A word as a row of chips, and the walk that shows it where there is a grid.
 pub(crate) struct WordView {
     pub(crate) scene: Option<Scene>,
+    pub(crate) recording: Option<RecordingView>,
     pub(crate) data: String,
     pub(crate) chips: Vec<Chip>,
     pub(crate) empty: String,
@@ -174,6 +176,7 @@ impl WordView {
         Self {
             data: names.join(" "),
             scene,
+            recording: RecordingView::shown(word, session),
             chips,
             empty: session.task().empty.clone(),
         }
