@@ -75,6 +75,9 @@ mod tests {
     #[test]
     fn addresses_have_no_other_meaning() {
         assert_eq!(address("run-1/a_0.png"), "run-1/a_0.png");
-        assert_eq!(address("a b/?#%&\"ä.png"), "a%20b/%3f%23%25%26%22%c3%a4.png");
+        assert_eq!(
+            address("a b/?#%&\"ä.png"),
+            "a%20b/%3f%23%25%26%22%c3%a4.png"
+        );
     }
 }

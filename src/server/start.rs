@@ -132,7 +132,9 @@ pub(crate) async fn begin(
     };
     match begun {
         Ok(id) => Ok(to_session(id)),
-        Err(error @ (WebError::Malformed(_) | WebError::UploadTooLarge | WebError::Unreadable(_))) => {
+        Err(
+            error @ (WebError::Malformed(_) | WebError::UploadTooLarge | WebError::Unreadable(_)),
+        ) => {
             let error = numbered(error);
             let typed = OwnForm {
                 title: own.form.text("title").to_owned(),

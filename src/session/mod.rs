@@ -153,7 +153,9 @@ impl Session {
 
     fn new(task: Task, setup: Setup, world: Option<Arc<World>>) -> Result<Self, String> {
         let alphabet = task.alphabet();
-        let situation = task.situation_in(world).map_err(|error| error.to_string())?;
+        let situation = task
+            .situation_in(world)
+            .map_err(|error| error.to_string())?;
         Ok(Self {
             learner: Pupil::new(&task, situation.as_ref(), &setup, &alphabet)?,
             situation,

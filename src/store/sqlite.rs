@@ -7,9 +7,7 @@ use std::time::Duration;
 use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior, params};
 
 use super::schema::{bring_up_to_date, check_header};
-use super::{
-    Entry, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files,
-};
+use super::{Entry, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files};
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.

@@ -298,8 +298,7 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     {
         let path = if text.is_empty() { "world" } else { "prior" };
         let world = situation::build_world(world.as_ref(), &symbols, &alphabet);
-        let whole =
-            world.and_then(|world| situation::build(Arc::new(world), prior.clone(), path));
+        let whole = world.and_then(|world| situation::build(Arc::new(world), prior.clone(), path));
         built = faults.keep(whole);
     }
     let situation = built.as_ref();

@@ -383,7 +383,9 @@ pub(super) fn build_world(
         }) => {
             return Err(Malformed::new(
                 "world.upload",
-                format!("the recordings of the upload `{upload}` are not here: ask the server that has them"),
+                format!(
+                    "the recordings of the upload `{upload}` are not here: ask the server that has them"
+                ),
             ));
         }
         Some(WorldText::Pool {

@@ -10,6 +10,7 @@ mod driver;
 mod house;
 mod page;
 mod pictures;
+mod recordings;
 mod teaching;
 mod walks;
 

@@ -8,4 +8,5 @@ mod pages;
 mod serve;
 mod site;
 mod store;
+mod uploads;
 mod worlds;

@@ -87,9 +87,7 @@ pub(super) fn all_are_here(
 fn similar(path: &str, sent: &[Spooled]) -> String {
     let last = |path: &str| path.rsplit('/').next().map(str::to_owned);
     let found = sent.iter().find(|file| last(&file.name) == last(path));
-    found.map_or_else(String::new, |file| {
-        format!(", and `{}` was", file.name)
-    })
+    found.map_or_else(String::new, |file| format!(", and `{}` was", file.name))
 }
 
 #[cfg(test)]

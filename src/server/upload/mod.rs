@@ -190,7 +190,9 @@ pub(crate) async fn own_rule(request: Request) -> Result<OwnRule, Request> {
     let id = UploadId::random().map_err(WebError::internal);
     let mut read = None;
     let (form, spool) = take(request, &TEXTS, |form| {
-        let id = id.as_ref().map_err(|_| WebError::internal("no randomness"))?;
+        let id = id
+            .as_ref()
+            .map_err(|_| WebError::internal("no randomness"))?;
         let task = form.own_task_in(Some(*id))?;
         let alphabet = task.alphabet();
         read = Some((task, *id));
@@ -205,7 +207,10 @@ pub(crate) async fn own_rule(request: Request) -> Result<OwnRule, Request> {
             let world = World::Pool(pool);
             Ok((task, Some(Upload { id, world, files })))
         }
-        (Ok(_), _) => form.own_task_in(None).map(|task| (task, None)).map_err(Into::into),
+        (Ok(_), _) => form
+            .own_task_in(None)
+            .map(|task| (task, None))
+            .map_err(Into::into),
     };
     Ok(OwnRule { form, sent, read })
 }

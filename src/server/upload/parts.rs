@@ -148,7 +148,12 @@ impl<F: FnMut(&Form) -> Result<Alphabet, WebError>> Taking<F> {
         Ok(())
     }
 
-    async fn text(&mut self, mut part: Field<'_>, name: String, most: usize) -> Result<(), Stopped> {
+    async fn text(
+        &mut self,
+        mut part: Field<'_>,
+        name: String,
+        most: usize,
+    ) -> Result<(), Stopped> {
         let mut bytes = Vec::new();
         while let Some(piece) = part.chunk().await? {
             self.length += piece.len();
@@ -176,8 +181,7 @@ impl<F: FnMut(&Form) -> Result<Alphabet, WebError>> Taking<F> {
             let alphabet = (self.alphabet_of)(&form)?;
             self.send(Piece::Recordings(alphabet)).await?;
         } else if path.is_empty() {
-            let message =
-                "a file came without a name: send its path, as the recordings name it, as its file name";
+            let message = "a file came without a name: send its path, as the recordings name it, as its file name";
             return Err(Malformed::new(MEDIA, message).into());
         } else {
             self.send(Piece::Media(path)).await?;

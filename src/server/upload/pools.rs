@@ -48,14 +48,17 @@ impl Pools {
             return Ok(None);
         };
         let unknown = || {
-            let message = format!("there is no upload `{named}` here: send the recordings with the task");
+            let message =
+                format!("there is no upload `{named}` here: send the recordings with the task");
             WebError::from(Malformed::new("world.upload", message))
         };
         let upload = named.parse().map_err(|_| unknown())?;
         if let Some(world) = self.find(&key(upload, task)) {
             return Ok(Some(world));
         }
-        let file = store.file(&upload, RECORDINGS).map_err(WebError::internal)?;
+        let file = store
+            .file(&upload, RECORDINGS)
+            .map_err(WebError::internal)?;
         let file = file.ok_or_else(unknown)?;
         let unfit = |error: &dyn std::fmt::Display| {
             Malformed::new("world.upload", format!("{RECORDINGS}: {error}"))

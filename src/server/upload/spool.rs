@@ -142,7 +142,8 @@ impl Filling {
             }
             (Some(open), _) => {
                 let missing = HEAD - open.head.len();
-                open.head.extend_from_slice(&bytes[..bytes.len().min(missing)]);
+                open.head
+                    .extend_from_slice(&bytes[..bytes.len().min(missing)]);
                 Ok(())
             }
             (None, _) => Ok(()),
