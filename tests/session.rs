@@ -1,10 +1,12 @@
 //! A session is a fold over its log: replaying, withdrawing and mending give
 //! what they should, whatever happened before.
 
-use automata::{Dfa, Word};
+use automata::Word;
 use memrep::learner::{Question, Reply};
 use memrep::oracle::{ScriptedTeacher, Target, Teacher, TeacherSettings};
-use memrep::session::{Decision, Event, Position, Refusal, Session, Setup, Task, ready};
+use memrep::session::{
+    Atom, Concept, Decision, Event, Position, Refusal, Session, Setup, Task, ready,
+};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -48,7 +50,7 @@ impl Kept {
         Ok(())
     }
 
-    fn open(&self) -> Option<(u32, Question<Word, Dfa>)> {
+    fn open(&self) -> Option<(u32, Question<Atom, Concept>)> {
         match self.session.position() {
             Position::Asking(number) => {
                 let asked = self.session.asked(*number).unwrap();
@@ -64,29 +66,45 @@ impl Kept {
 }
 
 /// What is open, whatever its number is.
-fn shown(session: &Session) -> Option<Question<Word, Dfa>> {
+fn shown(session: &Session) -> Option<Question<Atom, Concept>> {
     match session.position() {
         Position::Asking(number) => Some(session.asked(*number).unwrap().question.clone()),
         _ => None,
     }
 }
 
-fn truthfully(teacher: &mut ScriptedTeacher, question: &Question<Word, Dfa>) -> Reply<Word> {
+fn word(atom: &Atom) -> &Word {
+    match atom {
+        Atom::Word(word) => word,
+        other => panic!("{other:?} is no word"),
+    }
+}
+
+fn accepts(concept: &Concept, atom: &Atom) -> bool {
+    concept.automaton().unwrap().accepts(word(atom))
+}
+
+fn truthfully(teacher: &mut ScriptedTeacher, question: &Question<Atom, Concept>) -> Reply<Atom> {
     match question {
         Question::Membership { atom } => {
-            if teacher.membership(atom) {
+            if teacher.membership(word(atom)) {
                 Reply::Accept
             } else {
                 Reply::Reject
             }
         }
         Question::Comparison { first, second } => {
-            Reply::Compared(teacher.comparison(first, second))
+            Reply::Compared(teacher.comparison(word(first), word(second)))
         }
-        Question::Equivalence { hypothesis } => match teacher.counterexample(hypothesis) {
-            Some((atom, label)) => Reply::Counterexample { atom, label },
-            None => Reply::Correct,
-        },
+        Question::Equivalence { hypothesis } => {
+            match teacher.counterexample(hypothesis.automaton().unwrap()) {
+                Some((atom, label)) => Reply::Counterexample {
+                    atom: Atom::Word(atom),
+                    label,
+                },
+                None => Reply::Correct,
+            }
+        }
     }
 }
 
@@ -99,8 +117,12 @@ fn ready_tasks_are_over_the_alphabets_of_their_targets() {
     for name in ["robot", "tomita:1", "tomita:7", "modulo:4", "zeros:2"] {
         let task = ready(name).unwrap();
         let target = Target::named(name).unwrap();
-        assert_eq!(task.alphabet(), *target.dfa().alphabet(), "{name}");
-        assert_eq!(task.known(&task.alphabet()), target.known(), "{name}");
+        assert_eq!(task.alphabet().unwrap(), *target.dfa().alphabet(), "{name}");
+        assert_eq!(
+            task.known::<Word>(&task.universe().unwrap()),
+            target.known(),
+            "{name}"
+        );
         assert!(target.dfa().size() <= task.max_states, "{name}");
     }
 }
@@ -119,6 +141,7 @@ fn a_truthful_teacher_is_understood() {
             panic!("{name}: {:?}", kept.session.position());
         };
         let target = Target::named(name).unwrap();
+        let learned = learned.automaton().unwrap();
         assert!(learned.is_equivalent(target.dfa()).unwrap(), "{name}");
     }
 }
@@ -154,8 +177,8 @@ fn contradictory_answers_are_shown_and_mending_one_goes_on() {
             Question::Comparison { .. } => Reply::Compared(memrep::evidence::Comparison::First),
             Question::Equivalence { hypothesis } => {
                 // Twice the same word, once with either label.
-                let atom = Word::empty();
-                let label = !hypothesis.accepts(&atom);
+                let atom = Atom::Word(Word::empty());
+                let label = !accepts(hypothesis, &atom);
                 seen += 1;
                 Reply::Counterexample { atom, label }
             }
@@ -200,7 +223,7 @@ fn too_small_a_bound_is_a_conflict_that_a_larger_one_resolves() {
             }
             Position::Done(learned) => {
                 assert!(enlarged);
-                assert_eq!(learned.size(), 5);
+                assert_eq!(learned.automaton().unwrap().size(), 5);
                 break;
             }
             Position::Thinking => panic!("it has thought"),
@@ -308,7 +331,7 @@ fn whim() -> impl Strategy<Value = Whim> {
 }
 
 /// Some reply that fits, by the number drawn.
-fn some_reply(question: &Question<Word, Dfa>, drawn: u8) -> Reply<Word> {
+fn some_reply(question: &Question<Atom, Concept>, drawn: u8) -> Reply<Atom> {
     use memrep::evidence::Comparison::{Equal, First, Incomparable, Second};
     match question {
         Question::Membership { .. } => {
@@ -318,11 +341,13 @@ fn some_reply(question: &Question<Word, Dfa>, drawn: u8) -> Reply<Word> {
             Reply::Compared([First, Second, Equal, Incomparable][usize::from(drawn) % 4])
         }
         Question::Equivalence { hypothesis } => {
-            let symbols: Vec<_> = hypothesis.alphabet().symbols().collect();
+            let alphabet = hypothesis.automaton().unwrap().alphabet();
+            let symbols: Vec<_> = alphabet.symbols().collect();
             let atom: Word = (0..drawn % 4)
                 .map(|i| symbols[usize::from(drawn >> i) % symbols.len()])
                 .collect();
-            let label = !hypothesis.accepts(&atom);
+            let atom = Atom::Word(atom);
+            let label = !accepts(hypothesis, &atom);
             Reply::Counterexample { atom, label }
         }
     }
@@ -413,7 +438,7 @@ proptest! {
             clean.push(asked);
             clean.push(Event::Answered {
                 number,
-                reply: memrep::session::ReplyText::of(&standing.reply, kept.session.alphabet()),
+                reply: memrep::session::ReplyText::of(&standing.reply, kept.session.universe()),
             });
         }
         let mut clean = Session::replay(&clean).unwrap();
@@ -435,12 +460,12 @@ proptest! {
         if let Some(hypothesis) = kept.session.hypothesis() {
             for standing in kept.session.standing() {
                 match (&kept.session.asked(standing.number).unwrap().question, &standing.reply) {
-                    (Question::Membership { atom }, Reply::Accept) => prop_assert!(hypothesis.accepts(atom)),
-                    (Question::Membership { atom }, Reply::Reject) => prop_assert!(!hypothesis.accepts(atom)),
-                    (_, Reply::Counterexample { atom, label }) => prop_assert_eq!(hypothesis.accepts(atom), *label),
+                    (Question::Membership { atom }, Reply::Accept) => prop_assert!(accepts(&hypothesis, atom)),
+                    (Question::Membership { atom }, Reply::Reject) => prop_assert!(!accepts(&hypothesis, atom)),
+                    (_, Reply::Counterexample { atom, label }) => prop_assert_eq!(accepts(&hypothesis, atom), *label),
                     (Question::Comparison { first, second }, Reply::Compared(answer)) => {
                         let fact = memrep::evidence::Fact::compared(first.clone(), second.clone(), *answer);
-                        prop_assert!(fact.holds(|word| hypothesis.accepts(word)));
+                        prop_assert!(fact.holds(|word| accepts(&hypothesis, word)));
                     }
                     _ => {}
                 }

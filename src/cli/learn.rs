@@ -31,7 +31,7 @@ use crate::learner::{Config, Conformance, EQUIVALENCE_COST, Learner, Progress, S
 use crate::oracle::{
     Counterexamples, Order, ScriptedTeacher, SituatedTeacher, Target, TargetError, TeacherSettings,
 };
-use crate::task::{Costs, Situation, TaskFile};
+use crate::task::{Concept, Costs, Situation, TaskFile};
 use crate::world::grid::Labelling;
 
 /// The work that one question may do: a few seconds of search.
@@ -187,10 +187,11 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if let Some(status) = classes::run(args)? {
+    let file = task_file(args)?;
+    if let Some(status) = classes::run(args, file.as_ref())? {
         return Ok(status);
     }
-    let (target, file) = target(args)?;
+    let target = target(args, file.as_ref())?;
     let task = file.as_ref().map(|file| &file.task);
     let told = task.map(|task| task.costs).unwrap_or_default();
     let strategy = args.strategy.or(task.and_then(|task| task.strategy));
@@ -330,41 +331,45 @@ fn status<C>(report: &Report<C>) -> ExitCode {
     }
 }
 
-/// The target of this name, or else of this file; and the file, if it is a task.
-fn target(args: &Args) -> anyhow::Result<(Target, Option<TaskFile>)> {
-    let path = PathBuf::from(&args.target);
-    let (target, file) = match Target::named(&args.target) {
-        Err(error @ TargetError::Unknown(_)) => {
+/// The task in the file that the target names; none if it names none.
+fn task_file(args: &Args) -> anyhow::Result<Option<TaskFile>> {
+    let path = Path::new(&args.target);
+    let is_file = path.exists() && files::is_task(path);
+    let is_name = !matches!(Target::named(&args.target), Err(TargetError::Unknown(_)));
+    Ok((is_file && !is_name)
+        .then(|| TaskFile::open(path))
+        .transpose()?)
+}
+
+/// The target of this name, or else of this task or file.
+fn target(args: &Args, file: Option<&TaskFile>) -> anyhow::Result<Target> {
+    let path = Path::new(&args.target);
+    let target = match (Target::named(&args.target), file) {
+        (Err(TargetError::Unknown(_)), Some(file)) => task_target(&args.target, file)?,
+        (Err(error @ TargetError::Unknown(_)), None) => {
             // A path that is not there was more likely meant as a name.
             if path.extension().is_none() && !path.exists() {
                 return Err(error.into());
             }
-            if files::is_task(&path) {
-                let file = TaskFile::open(&path)?;
-                (task_target(&args.target, &file)?, Some(file))
-            } else {
-                let document = files::read_automaton(&path, None)?;
-                (Target::automaton(&args.target, &document.dfa), None)
-            }
+            Target::automaton(&args.target, &files::read_automaton(path, None)?.dfa)
         }
-        named => (named?, None),
+        (named, _) => named?,
     };
-    let target = if args.no_empty_word {
+    Ok(if args.no_empty_word {
         target.without_known()
     } else {
         target
-    };
-    Ok((target, file))
+    })
 }
 
 /// What the task's file says that the teacher has in mind.
 fn task_target(name: &str, file: &TaskFile) -> anyhow::Result<Target> {
-    let Some(dfa) = &file.target else {
+    let Some(dfa) = file.target.as_ref().and_then(Concept::automaton) else {
         anyhow::bail!(
             "{name} has no target for a scripted teacher: add `target`, such as `target = [\"avoid X\", \"reach Y\"]`"
         );
     };
-    let known = file.task.known(&file.task.alphabet());
+    let known = file.task.known(&file.universe);
     Ok(Target::automaton(name, dfa).with_known(known))
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     addr: SocketAddr,
-    /// The `SQLite` file in which sessions are kept; created if there is none.
+    /// The database file in which sessions are kept; created if there is none.
     #[arg(long, value_name = "PATH", default_value = "memrep.db")]
     database: PathBuf,
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::files;
 use super::output::{self, Output, counted, spelled};
 use crate::concept::Template;
-use crate::task::{Situation, TEMPLATE, TaskFile, WorldText};
+use crate::task::{Concept, Situation, TEMPLATE, TaskFile, Universe, WorldText};
 use crate::world::World;
 
 /// So many of the behaviours that are left open are counted.
@@ -155,19 +155,28 @@ fn check(args: &Check) -> anyhow::Result<ExitCode> {
 }
 
 fn tell(args: &Check, file: &TaskFile) -> anyhow::Result<()> {
+    let target = (file.target.as_ref()).map(|target| match target {
+        Concept::Automaton(dfa) => dfa.minimise().size(),
+        other => file.universe.size(other),
+    });
+    let Universe::Words {
+        alphabet,
+        situation,
+    } = &file.universe
+    else {
+        return tell_class(args, file, target);
+    };
     let task = &file.task;
-    let alphabet = task.alphabet();
-    let open = (file.situation.as_ref()).map(|Situation { world, prior }| {
+    let open = (situation.as_ref()).map(|Situation { world, prior }| {
         let listing = world.list(prior.open(), COUNTED);
         let number = listing.complete.then_some(listing.words.len());
         (number, listing.words)
     });
     let (number, words) = open.unwrap_or_default();
-    let never_shown = match &file.situation {
-        Some(situation) => never_shown(&situation.world, &alphabet),
+    let never_shown = match situation {
+        Some(situation) => never_shown(&situation.world, alphabet),
         None => Vec::new(),
     };
-    let target = file.target.as_ref().map(|dfa| dfa.minimise().size());
     if args.format == Output::Json {
         let spell = |word| alphabet.spell(word).collect();
         return output::line(serde_json::to_string(&Summary {
@@ -195,16 +204,16 @@ fn tell(args: &Check, file: &TaskFile) -> anyhow::Result<()> {
     output::line(format!("{}: this task can be taught", args.file.display()))?;
     output::line(format!("title:    {}", task.title))?;
     output::line(format!("symbols:  {}", symbols.join(", ")))?;
-    output::line(format!("world:    {}", world_in_words(file)))?;
+    output::line(format!("world:    {}", world_in_words(situation.as_ref())))?;
     if !never_shown.is_empty() {
         let names = never_shown.join(", ");
         output::line(format!("          nothing in it shows {names}"))?;
     }
     output::line(format!("examples: {}", task.examples.len()))?;
     let simplest: Vec<String> = (words.iter().take(3))
-        .map(|word| spelled(&alphabet, word))
+        .map(|word| spelled(alphabet, word))
         .collect();
-    output::line(match (file.situation.is_some(), number) {
+    output::line(match (situation.is_some(), number) {
         (false, _) => "open:     every behaviour".to_owned(),
         (true, Some(number)) => {
             let behaviours = counted(number, "behaviour", "behaviours");
@@ -228,8 +237,76 @@ fn tell(args: &Check, file: &TaskFile) -> anyhow::Result<()> {
     }
 }
 
-fn world_in_words(file: &TaskFile) -> String {
-    match file.situation.as_ref().map(|situation| &*situation.world) {
+/// What a task that learns no automaton is about, for programs.
+#[derive(Serialize)]
+struct ClassSummary<'a> {
+    file: &'a Path,
+    name: &'a str,
+    class: &'static str,
+    examples: usize,
+    /// The size of the target.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<usize>,
+}
+
+fn tell_class(args: &Check, file: &TaskFile, target: Option<usize>) -> anyhow::Result<()> {
+    let (class, about) = match &file.universe {
+        Universe::Words { .. } => ("words", String::new()),
+        Universe::Monotone(axes) => {
+            let ranges: Vec<String> = (axes.axes().iter())
+                .map(|axis| {
+                    let (best, worst) = (axis.spell(axis.best), axis.spell(axis.worst));
+                    format!("{} from {best} to {worst}", axis.name)
+                })
+                .collect();
+            let points = axes.points();
+            (
+                "monotone",
+                format!(
+                    "limits on {}, up to {points} points per axis",
+                    ranges.join(" and ")
+                ),
+            )
+        }
+        Universe::Finite(table) => (
+            "finite",
+            format!(
+                "one of {} over {}",
+                counted(table.class().concepts().len(), "concept", "concepts"),
+                counted(table.atoms().len(), "behaviour", "behaviours")
+            ),
+        ),
+        Universe::Linear(rewards) => (
+            "linear",
+            format!(
+                "rewards that weigh {}, over {}",
+                rewards.features().join(" and "),
+                counted(rewards.behaviours().len(), "behaviour", "behaviours")
+            ),
+        ),
+    };
+    let task = &file.task;
+    if args.format == Output::Json {
+        return output::line(serde_json::to_string(&ClassSummary {
+            file: &args.file,
+            name: &task.name,
+            class,
+            examples: task.examples.len(),
+            target,
+        })?);
+    }
+    output::line(format!("{}: this task can be taught", args.file.display()))?;
+    output::line(format!("title:    {}", task.title))?;
+    output::line(format!("class:    {class}, {about}"))?;
+    output::line(format!("examples: {}", task.examples.len()))?;
+    output::line(match target {
+        Some(size) => format!("target:   a rule of size {size}, for `memrep learn`"),
+        None => "target:   none, so `memrep learn` cannot teach it by itself".to_owned(),
+    })
+}
+
+fn world_in_words(situation: Option<&Situation>) -> String {
+    match situation.map(|situation| &*situation.world) {
         None => "all sequences".to_owned(),
         Some(World::Words(words)) => {
             let longest = counted(words.longest(), "symbol", "symbols");

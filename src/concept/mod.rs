@@ -26,8 +26,8 @@ pub use crate::identify::{Cause, Contradiction, Failure, Spread, Weighted, Wish}
 pub use dfa::DfaClass;
 pub use finite::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 pub use monotone::{
-    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MonotoneClass, Place,
-    Point,
+    Behaviour, Corners, Family, LinearError, LinearReward, LinearRewards, MOST_POINTS,
+    MonotoneClass, Place, Point,
 };
 pub use preorder::Preorder;
 pub use prior::{Applied, Prior, PriorError};
@@ -131,6 +131,13 @@ pub trait ConceptClass {
         let atoms: Vec<Self::Atom> = self.atoms().take(DRAWN).collect();
         let draw = |_| atoms.choose(random).cloned();
         (0..count).filter_map(draw).collect()
+    }
+
+    /// The simplest atom, which cannot be shown, that would decide what nothing that
+    /// can be shown does about this hypothesis; none where all is decided.
+    fn beyond(&self, hypothesis: &Self::Concept) -> Option<Self::Atom> {
+        let _ = hypothesis;
+        None
     }
 
     /// The distribution of [`Self::draw`], as a phrase that can stand in

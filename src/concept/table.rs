@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
+use super::{ConceptClass as _, FiniteAtom, FiniteClass, FiniteClassError, FiniteConcept};
 
 /// A finite class with the names of its atoms and concepts.
 ///
@@ -142,6 +142,20 @@ impl FiniteTable {
     /// The class; nothing is known of its concepts yet.
     pub fn class(&self) -> &FiniteClass {
         &self.class
+    }
+
+    /// What the atoms are called, in their order.
+    pub fn atoms(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.atoms.iter().map(String::as_str)
+    }
+
+    /// Whether the concept contains the atom.
+    ///
+    /// # Panics
+    ///
+    /// If one of them belongs to a larger class.
+    pub fn accepts(&self, concept: FiniteConcept, atom: FiniteAtom) -> bool {
+        self.class.contains(&concept, &atom)
     }
 
     /// What an atom of the class is called.

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{ClassGoal, ScriptedTeacher, TeacherSettings};
-use crate::concept::{Corners, MonotoneClass, Point};
+use crate::concept::{Corners, MOST_POINTS, MonotoneClass, Point};
 
 /// A parameter of a uniform grid, to be taught.
 #[derive(Clone, Debug)]
@@ -22,10 +22,6 @@ pub struct MonotoneTarget {
     "target `{0}`: give monotone:D:TICKS with D from 1 to 4 dimensions and TICKS from 2 points per axis, up to 1000, 200, 40 and 16 points for 1, 2, 3 and 4 dimensions, and perhaps :N for the target drawn as number N"
 )]
 pub struct MonotoneError(String);
-
-/// By dimensions less one: the most points per axis with which questions come
-/// within a fraction of a second.
-const MOST: [usize; 4] = [1000, 200, 40, 16];
 
 /// What names of these targets begin with.
 const PREFIX: &str = "monotone:";
@@ -67,7 +63,7 @@ impl MonotoneTarget {
             let number = parts
                 .next()
                 .map_or(Some(number), |part| part.parse().ok())?;
-            let most = MOST.get(dimensions.checked_sub(1)?)?;
+            let most = MOST_POINTS.get(dimensions.checked_sub(1)?)?;
             let fits = (2..=*most).contains(&points) && parts.next().is_none();
             fits.then(|| Self::draw(dimensions, points, number))
         };

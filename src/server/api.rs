@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use automata::{Dfa, Word};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{Path, Query, State};
@@ -20,8 +19,8 @@ use super::forms;
 use super::upload::under_task;
 use crate::learner::Question;
 use crate::session::{
-    Automaton, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session, Setup,
-    Task, ready,
+    Atom, Concept, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session,
+    Setup, Task, ready,
 };
 use crate::store::SessionId;
 use crate::world::Shown;
@@ -41,6 +40,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/undo", post(undo))
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/automaton", get(automaton))
+        .route("/sessions/{id}/concept", get(concept))
         .route("/sessions/{id}/log", get(log))
 }
 
@@ -117,7 +117,7 @@ async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
             "question": open,
             "counts": session.counts(),
             "answers": session.standing().iter().map(|s| s.number).collect::<Vec<_>>(),
-            "hypothesis": session.hypothesis().as_ref().map(Automaton::of),
+            "hypothesis": session.hypothesis().map(|rule| session.universe().rule(&rule)),
         })
     };
     Ok(Json(app.teaching.look(id, view).await?))
@@ -131,10 +131,10 @@ fn describe(session: &Session, position: &Position) -> Value {
             let Some(asked) = session.asked(*number) else {
                 return json!({"kind": "thinking"});
             };
-            let question = QuestionText::of(&asked.question, session.alphabet());
+            let question = QuestionText::of(&asked.question, session.universe());
             let mut value = serde_json::to_value(question).unwrap_or_default();
             value["number"] = (*number).into();
-            let words: &[&Word] = match &asked.question {
+            let atoms: &[&Atom] = match &asked.question {
                 Question::Membership { atom } => &[atom],
                 Question::Comparison { first, second } => &[first, second],
                 Question::Equivalence { hypothesis } => {
@@ -142,7 +142,10 @@ fn describe(session: &Session, position: &Position) -> Value {
                     &[]
                 }
             };
-            let shown = words.iter().filter_map(|word| session.world()?.shown(word));
+            let shown = atoms.iter().filter_map(|atom| match atom {
+                Atom::Word(word) => session.world()?.shown(word),
+                Atom::Point(_) | Atom::Item(_) => None,
+            });
             let shown: Vec<Shown<'_>> = shown.collect();
             if !shown.is_empty() {
                 value["shown"] = json!(shown);
@@ -161,19 +164,20 @@ fn describe(session: &Session, position: &Position) -> Value {
         Position::Done(hypothesis) => {
             let mut value = json!({"kind": "done"});
             show_rule(&mut value, session, hypothesis);
-            if let Some(word) = session.beyond() {
-                value["beyond"] = json!(session.alphabet().spell(&word).collect::<Vec<_>>());
+            if let Some(atom) = session.beyond() {
+                value["beyond"] = session.universe().text(&atom).bare();
             }
             value
         }
     }
 }
 
-/// The whole automaton; and the learned part, where that is not all of it.
-fn show_rule(value: &mut Value, session: &Session, learned: &Dfa) {
-    value["hypothesis"] = json!(Automaton::of(&session.whole(learned)));
+/// The whole rule; and the learned part, where that is not all of it.
+fn show_rule(value: &mut Value, session: &Session, learned: &Concept) {
+    let universe = session.universe();
+    value["hypothesis"] = json!(universe.rule(&session.whole(learned)));
     if session.has_prior() {
-        value["learned"] = json!(Automaton::of(learned));
+        value["learned"] = json!(universe.rule(learned));
     }
 }
 
@@ -188,9 +192,9 @@ async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body)
     let body = read_body(body)?;
     let decide = move |session: &Session| {
         let fields = Fields::of(&body, "")?;
-        fields.only(&["question", "answer", "word", "label"])?;
+        fields.only(&["question", "answer", session.universe().key(), "label"])?;
         let number = forms::question_number(&fields)?;
-        let reply = forms::json_reply(&fields, session.alphabet())?;
+        let reply = forms::json_reply(&fields, session.universe())?;
         Ok(session.answer(number, &reply)?)
     };
     Ok(Json(app.teaching.act(id, decide, describe).await?))
@@ -201,9 +205,9 @@ async fn change(State(app): State<AppState>, Path(id): Path<String>, body: Body)
     let body = read_body(body)?;
     let decide = move |session: &Session| {
         let fields = Fields::of(&body, "")?;
-        fields.only(&["question", "answer", "word", "label"])?;
+        fields.only(&["question", "answer", session.universe().key(), "label"])?;
         let number = forms::question_number(&fields)?;
-        let reply = forms::json_reply(&fields, session.alphabet())?;
+        let reply = forms::json_reply(&fields, session.universe())?;
         Ok(session.change(number, &reply)?)
     };
     Ok(Json(app.teaching.act(id, decide, describe).await?))
@@ -276,15 +280,18 @@ async fn automaton(
         .teaching
         .look(id, move |session| {
             let rule = if is_whole {
-                session.hypothesis()?
+                session.hypothesis()
             } else {
-                session.learned()?.clone()
+                session.learned().cloned()
             };
-            Some((rule, session.task().clone()))
+            match rule.ok_or(WebError::NoAutomaton)? {
+                Concept::Automaton(dfa) => Ok((dfa, session.task().clone())),
+                Concept::Parameter(_) | Concept::Named(_) => Err(WebError::NotAnAutomaton),
+            }
         })
         .await?;
-    let (hypothesis, task) = shown.ok_or(WebError::NoAutomaton)?;
-    let name = export::file_name(&task, format);
+    let (hypothesis, task) = shown?;
+    let name = export::file_name(&task, format.extension());
     let body = tokio::task::spawn_blocking(move || export::write(&hypothesis, &task, format))
         .await
         .map_err(WebError::internal)??;
@@ -299,6 +306,26 @@ async fn automaton(
         body,
     )
         .into_response())
+}
+
+/// The rule in the form of its class.
+async fn concept(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+) -> Result<Response, ApiError> {
+    let id = session_id(&id)?;
+    let view = |session: &Session| {
+        let rule = session.hypothesis().ok_or(WebError::NoAutomaton)?;
+        let body = export::concept(&rule, session.universe(), session.task())?;
+        Ok::<_, WebError>((body, export::file_name(session.task(), "json")))
+    };
+    let (body, name) = app.teaching.look(id, view).await??;
+    let disposition = format!("attachment; filename=\"{name}\"");
+    let headers = [
+        (CONTENT_TYPE, "application/json".to_owned()),
+        (CONTENT_DISPOSITION, disposition),
+    ];
+    Ok((headers, body).into_response())
 }
 
 async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, ApiError> {

@@ -34,6 +34,8 @@ pub(crate) enum WebError {
     Foreign,
     /// No automaton is on show at the moment.
     NoAutomaton,
+    /// The session learns no automaton.
+    NotAnAutomaton,
     /// The automaton is too large for this form.
     TooLargeToShow(String),
     /// The learner is still at work.
@@ -65,10 +67,14 @@ impl WebError {
                 | Refusal::NoCounterexample { .. }
                 | Refusal::Infeasible
                 | Refusal::Settled { .. }
+                | Refusal::NoBound
                 | Refusal::BadBound { .. },
             )
             | Self::Malformed(_) => StatusCode::UNPROCESSABLE_ENTITY,
-            Self::Refused(_) | Self::NoAutomaton | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
+            Self::Refused(_)
+            | Self::NoAutomaton
+            | Self::NotAnAutomaton
+            | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
             Self::Unreadable(_) => StatusCode::BAD_REQUEST,
             Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             Self::Foreign => StatusCode::FORBIDDEN,
@@ -93,6 +99,7 @@ impl WebError {
                 Refusal::Settled { .. } => "settled_beforehand",
                 Refusal::Outdated { .. } => "hypothesis_outdated",
                 Refusal::NothingToUndo => "nothing_to_undo",
+                Refusal::NoBound => "no_bound",
                 Refusal::BadBound { .. } => "bad_bound",
             },
             Self::Malformed(_) => "malformed",
@@ -100,6 +107,7 @@ impl WebError {
             Self::TooLarge | Self::UploadTooLarge => "body_too_large",
             Self::Foreign => "cross_site",
             Self::NoAutomaton => "no_automaton",
+            Self::NotAnAutomaton => "not_an_automaton",
             Self::TooLargeToShow(_) => "automaton_too_large",
             Self::Slow => "still_thinking",
             Self::Corrupt(_) => "log_unreadable",
@@ -119,7 +127,7 @@ impl WebError {
                 Refusal::NoCounterexample { .. } => Some("label"),
                 Refusal::Infeasible | Refusal::Settled { .. } => Some("word"),
                 Refusal::BadBound { .. } => Some("max_states"),
-                Refusal::NothingToUndo => None,
+                Refusal::NothingToUndo | Refusal::NoBound => None,
             },
             Self::UploadTooLarge => Some(RECORDINGS),
             _ => None,
@@ -148,6 +156,9 @@ impl WebError {
             }
             Self::NoAutomaton => {
                 "No rule is on show at the moment: go on answering, or mend the answers that contradict each other, until one is.".to_owned()
+            }
+            Self::NotAnAutomaton => {
+                "This session learns no automaton: take its rule from `/concept`.".to_owned()
             }
             Self::Slow => {
                 "The next question is still being worked out. Your answer is kept: ask again in a moment."

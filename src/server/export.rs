@@ -5,7 +5,7 @@ use automata::format::{dot, dot_people, hoa, json};
 
 use super::error::WebError;
 use crate::draw::{self, Captions};
-use crate::session::{Malformed, Task};
+use crate::session::{Concept, Malformed, Task, Universe};
 
 /// A file format for automata.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,13 +89,13 @@ impl Format {
 }
 
 /// A name for a download, of harmless characters only.
-pub(crate) fn file_name(task: &Task, format: Format) -> String {
+pub(crate) fn file_name(task: &Task, extension: &str) -> String {
     let stem: String = task
         .name
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
         .collect();
-    format!("{stem}.{}", format.extension())
+    format!("{stem}.{extension}")
 }
 
 /// The automaton in this format.
@@ -115,6 +115,24 @@ pub(crate) fn write(dfa: &Dfa, task: &Task, format: Format) -> Result<String, We
         Format::Hoa => hoa::write(dfa).map_err(|e| cannot(&e)),
         Format::Svg => draw::document(dfa, &captions(task)).map_err(|e| cannot(&e)),
     }
+}
+
+/// The rule as JSON, in the form of its class.
+pub(crate) fn concept(
+    concept: &Concept,
+    universe: &Universe,
+    task: &Task,
+) -> Result<String, WebError> {
+    if let Concept::Automaton(dfa) = concept {
+        return write(dfa, task, Format::Json);
+    }
+    let provenance = json::Provenance {
+        version: Some(env!("CARGO_PKG_VERSION").to_owned()),
+        ..json::Provenance::default()
+    };
+    let saved = universe.saved(concept, &task.title, provenance);
+    let text = serde_json::to_string(&saved).map_err(WebError::internal)?;
+    Ok(format!("{text}\n"))
 }
 
 /// The drawing to be put into a page; `None` where it would be unreadable.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::error::WebError;
 use crate::evidence::Comparison;
 use crate::learner::Reply;
-use crate::session::{Fields, MAX_WORD, Malformed, Task, read_word};
+use crate::session::{Atom, Fields, MAX_WORD, Malformed, Task, Universe};
 use crate::store::UploadId;
 
 /// The answers that the API knows, for people.
@@ -35,16 +35,18 @@ pub(crate) fn question_number(fields: &Fields<'_>) -> Result<u32, Malformed> {
         .ok_or_else(|| Malformed::new("question", "give the number of the question"))
 }
 
-/// The answer in a JSON body: the keys `answer`, `word` and `label`.
+/// The answer in a JSON body: the keys `answer`, `label`, and the one under which the
+/// universe tells behaviours.
 pub(crate) fn json_reply(
     fields: &Fields<'_>,
-    alphabet: &Alphabet,
-) -> Result<Reply<Word>, Malformed> {
+    universe: &Universe,
+) -> Result<Reply<Atom>, Malformed> {
     let Some(answer) = fields.get("answer").and_then(Value::as_str) else {
         return Err(Malformed::new("answer", format!("give one of {ANSWERS}")));
     };
+    let key = universe.key();
     if answer != "counterexample" {
-        for key in ["word", "label"] {
+        for key in [key, "label"] {
             if fields.get(key).is_some() {
                 return Err(Malformed::new(
                     key,
@@ -54,24 +56,29 @@ pub(crate) fn json_reply(
         }
         return plain_reply(answer);
     }
-    let Some(word) = fields.get("word") else {
+    let Some(atom) = fields.get(key) else {
+        let how = match universe {
+            Universe::Words { .. } => ", as an array of symbol names".to_owned(),
+            Universe::Monotone(axes) => format!(": {}", axes.expected()),
+            Universe::Finite(_) | Universe::Linear(_) => " by its name".to_owned(),
+        };
         return Err(Malformed::new(
-            "word",
-            "give the word that the automaton treats wrongly, as an array of symbol names",
+            key,
+            format!("give the {key} that the rule treats wrongly{how}"),
         ));
     };
-    let atom = read_word(word, "word", alphabet)?;
+    let atom = universe.read(atom, key)?;
     let Some(label) = fields.get("label").and_then(Value::as_bool) else {
         return Err(Malformed::new(
             "label",
-            "say `true` if the word is acceptable, `false` if it is not",
+            format!("say `true` if the {key} is acceptable, `false` if it is not"),
         ));
     };
     Ok(Reply::Counterexample { atom, label })
 }
 
 /// The answers that need no word.
-pub(crate) fn plain_reply(answer: &str) -> Result<Reply<Word>, Malformed> {
+pub(crate) fn plain_reply(answer: &str) -> Result<Reply<Atom>, Malformed> {
     Ok(match answer {
         "accept" => Reply::Accept,
         "reject" => Reply::Reject,
@@ -120,12 +127,32 @@ impl Form {
             .map_err(|_| Malformed::new(name, format!("give a whole number as `{name}`")))
     }
 
-    /// The answer: a plain one, or a counterexample where the form has a word.
-    pub(crate) fn reply(&self, alphabet: &Alphabet) -> Result<Reply<Word>, Malformed> {
+    /// All values of a field, in the order sent.
+    pub(crate) fn texts<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a str> {
+        let named = self.0.iter().filter(move |(key, _)| key == name);
+        named.map(|(_, value)| value.as_str())
+    }
+
+    /// The answer: a plain one, or a counterexample where the form has none.
+    pub(crate) fn reply(&self, universe: &Universe) -> Result<Reply<Atom>, Malformed> {
         if self.has("answer") {
             return plain_reply(self.text("answer"));
         }
-        let atom = typed_word(self.text("word"), "word", alphabet)?;
+        let atom = match universe {
+            Universe::Words { alphabet, .. } => {
+                Atom::Word(typed_word(self.text("word"), "word", alphabet)?)
+            }
+            Universe::Monotone(axes) => {
+                let values = self.texts("point").map(typed_number);
+                let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+                let point = axes.nearest(&values);
+                let point = point.map_err(|error| Malformed::new("point", error.to_string()))?;
+                Atom::Point(point)
+            }
+            Universe::Finite(_) | Universe::Linear(_) => {
+                universe.read(&self.text("item").into(), "item")?
+            }
+        };
         let label = match self.text("label") {
             "true" => true,
             "false" => false,
@@ -158,7 +185,9 @@ impl Form {
         }
         // The alphabet is checked first, so that its faults are named before
         // those of the examples.
-        let alphabet = Task::from_json(&task)?.alphabet();
+        Task::from_json(&task)?;
+        let alphabet =
+            Alphabet::new(names).map_err(|error| Malformed::new("symbols", error.to_string()))?;
         let mut examples = Vec::new();
         for (i, line) in self.text("examples").lines().enumerate() {
             let line = line.trim();
@@ -186,6 +215,22 @@ impl Form {
         }
         Task::from_json(&task)
     }
+}
+
+/// A number as people type it, with a point or a comma.
+fn typed_number(text: &str) -> Result<f64, Malformed> {
+    let number = text.trim().replace(',', ".").parse().ok();
+    number
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| {
+            Malformed::new(
+                "point",
+                format!(
+                    "`{}` is no number: write digits, as in `12` or `1.5`",
+                    text.trim()
+                ),
+            )
+        })
 }
 
 fn example_label(line: &str) -> Option<(bool, &str)> {

@@ -6,13 +6,19 @@
 
 mod api;
 mod assets;
+mod behaviour;
+mod chart;
+mod drive;
 mod error;
 mod export;
 mod forms;
 mod guard;
 mod media;
 mod pages;
+mod past;
+mod practice;
 mod recording;
+mod rule;
 mod scene;
 mod start;
 mod teaching;

@@ -10,14 +10,21 @@ use axum::routing::{get, post};
 
 use super::AppState;
 use super::api::session_id;
+use super::behaviour::{BehaviourView, Chip, Content, chips};
 use super::error::{PageError, WebError};
 use super::forms::{Faults, Form};
-use super::views::{Bar, Chip, PastView, RuleView, Shell, WordView, chips, render};
-use super::{export, media, start};
+use super::past::PastView;
+use super::rule::RuleView;
+use super::views::{Bar, Shell, render};
+use super::{export, media, practice, start};
 use crate::learner::{Counts, Question, Reply};
-use crate::session::{Decision, MAX_STATES, Position, Session};
+use crate::session::{Concept, Decision, MAX_STATES, Position, Session, Universe};
 use crate::store::SessionId;
+use crate::task::Axis;
 use crate::world::World;
+
+/// Where a counterexample is typed, the behaviour first.
+const ATOM_FIELDS: [&str; 4] = ["word", "point", "item", "label"];
 
 /// A form's body, or why it is none.
 pub(crate) type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
@@ -32,6 +39,10 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/changes", post(change))
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/history", get(history))
+        .route(
+            "/sessions/{id}/practice",
+            get(practice::show).post(practice::answer),
+        )
         .route("/sessions/{id}/automaton.svg", get(drawing))
         .route("/sessions/{id}/media/{*path}", get(media::show))
 }
@@ -55,8 +66,8 @@ struct QuestionPage {
     bar: Bar,
     notice: Option<String>,
     number: u32,
-    first: WordView,
-    second: Option<WordView>,
+    first: BehaviourView,
+    second: Option<BehaviourView>,
     hurried: bool,
 }
 
@@ -68,12 +79,61 @@ struct EquivalencePage {
     notice: Option<String>,
     number: u32,
     rule: RuleView,
-    chips: Vec<Chip>,
-    names: String,
-    empty: String,
+    ask: Ask,
     typed: String,
     label: String,
     faults: Faults,
+}
+
+/// How a person says what the rule treats wrongly.
+enum Ask {
+    /// By symbols.
+    Word {
+        chips: Vec<Chip>,
+        names: String,
+        empty: String,
+    },
+    /// By a number an axis.
+    Values(Vec<InputView>),
+    /// By its name.
+    Items(Vec<String>),
+}
+
+/// Where a number on an axis is typed.
+struct InputView {
+    name: String,
+    least: String,
+    most: String,
+    step: String,
+    typed: String,
+}
+
+impl Ask {
+    fn of(session: &Session, typed: &Typed) -> Self {
+        match session.universe() {
+            Universe::Words { alphabet, .. } => {
+                let names: Vec<&str> = alphabet.names().collect();
+                Self::Word {
+                    chips: chips(session.task()),
+                    names: names.join(", "),
+                    empty: session.task().empty.clone(),
+                }
+            }
+            Universe::Monotone(axes) => {
+                let input = |(place, axis): (usize, &Axis)| InputView {
+                    name: axis.name.clone(),
+                    least: axis.spell(axis.best.min(axis.worst)),
+                    most: axis.spell(axis.best.max(axis.worst)),
+                    step: axis.spell(axes.step(axis)),
+                    typed: typed.values.get(place).cloned().unwrap_or_default(),
+                };
+                Self::Values(axes.axes().iter().enumerate().map(input).collect())
+            }
+            universe @ (Universe::Finite(_) | Universe::Linear(_)) => {
+                Self::Items(universe.items().into_iter().map(str::to_owned).collect())
+            }
+        }
+    }
 }
 
 #[derive(Template)]
@@ -110,7 +170,7 @@ struct DonePage {
     files: Vec<Download>,
     agreed: Option<u32>,
     /// What nothing that can be shown decides; and whether that is recordings.
-    beyond: Option<WordView>,
+    beyond: Option<BehaviourView>,
     recorded: bool,
 }
 
@@ -119,7 +179,9 @@ struct DonePage {
 struct Typed {
     notice: Option<String>,
     faults: Faults,
-    word: String,
+    /// A word, or the name of a behaviour.
+    atom: String,
+    values: Vec<String>,
     label: String,
 }
 
@@ -134,8 +196,8 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
     };
     // Only the page of an equivalence query has the fields to say it at.
     let notice = match showing {
-        Some(Question::Equivalence { .. }) => typed.notice,
-        _ => typed.notice.or_else(|| typed.faults.message()),
+        Some(Question::Equivalence { .. }) => typed.notice.clone(),
+        _ => typed.notice.clone().or_else(|| typed.faults.message()),
     };
     match session.position() {
         Position::Thinking => PageError(WebError::Slow).into_response(),
@@ -144,23 +206,20 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 return PageError(WebError::Slow).into_response();
             };
             let (first, second) = match &asked.question {
-                Question::Membership { atom } => (WordView::of(atom, session), None),
+                Question::Membership { atom } => (BehaviourView::of(atom, session), None),
                 Question::Comparison { first, second } => {
-                    let (first, second) = WordView::pair(first, second, session);
+                    let (first, second) = BehaviourView::pair(first, second, session);
                     (first, Some(second))
                 }
                 Question::Equivalence { hypothesis } => {
-                    let names: Vec<&str> = session.alphabet().names().collect();
                     return render(&EquivalencePage {
                         shell,
                         bar,
                         notice,
                         number: *number,
-                        rule: RuleView::of(&session.whole(hypothesis), task),
-                        chips: chips(task),
-                        names: names.join(", "),
-                        empty: task.empty.clone(),
-                        typed: typed.word,
+                        rule: RuleView::of(&session.whole(hypothesis), session),
+                        ask: Ask::of(session, &typed),
+                        typed: typed.atom,
                         label: typed.label,
                         faults: typed.faults,
                     });
@@ -198,10 +257,10 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
             shell,
             bar,
             notice,
-            rule: RuleView::of(&session.whole(hypothesis), task),
+            rule: RuleView::of(&session.whole(hypothesis), session),
             counts: session.counts(),
-            files: downloads(id),
-            beyond: session.beyond().map(|word| WordView::of(&word, session)),
+            files: downloads(id, session.universe()),
+            beyond: (session.beyond()).map(|atom| BehaviourView::of(&atom, session)),
             recorded: matches!(session.world(), Some(World::Pool(_))),
             agreed: session
                 .standing()
@@ -213,22 +272,29 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
     }
 }
 
-fn downloads(id: SessionId) -> Vec<Download> {
-    let automata = export::OFFERED
-        .iter()
-        .map(|&(format, title, about)| Download {
-            format: format.name(),
-            title,
-            about,
-            href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
-        });
+fn downloads(id: SessionId, universe: &Universe) -> Vec<Download> {
+    let automaton = |&(format, title, about): &(export::Format, _, _)| Download {
+        format: format.name(),
+        title,
+        about,
+        href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
+    };
+    let rules: Vec<Download> = match universe {
+        Universe::Words { .. } => export::OFFERED.iter().map(automaton).collect(),
+        Universe::Monotone(_) | Universe::Finite(_) | Universe::Linear(_) => vec![Download {
+            format: "json",
+            title: "JSON",
+            about: "the rule, for programs",
+            href: format!("/api/v1/sessions/{id}/concept"),
+        }],
+    };
     let log = Download {
         format: "log",
         title: "Log",
         about: "every question and answer, one a line",
         href: format!("/api/v1/sessions/{id}/log"),
     };
-    automata.chain([log]).collect()
+    rules.into_iter().chain([log]).collect()
 }
 
 async fn show(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, PageError> {
@@ -252,8 +318,8 @@ async fn act(
         }
         Err(error) if error.is_refusal() => {
             let typed = match error.field() {
-                Some("word" | "label") => Typed {
-                    faults: Faults::of(&error, &["word", "label"]),
+                Some(field) if ATOM_FIELDS.iter().any(|named| field.starts_with(named)) => Typed {
+                    faults: Faults::of(&error, &ATOM_FIELDS),
                     ..typed
                 },
                 _ => Typed {
@@ -277,12 +343,13 @@ async fn answer(
     let id = session_id(&id)?;
     let form = read_form(fields)?;
     let typed = Typed {
-        word: form.text("word").to_owned(),
+        atom: [form.text("word"), form.text("item")].concat(),
+        values: form.texts("point").map(str::to_owned).collect(),
         label: form.text("label").to_owned(),
         ..Typed::default()
     };
     let decide = move |session: &Session| {
-        let reply = form.reply(session.alphabet())?;
+        let reply = form.reply(session.universe())?;
         Ok(session.answer(form.number("question")?, &reply)?)
     };
     act(&app, id, typed, decide).await
@@ -307,7 +374,7 @@ async fn change(
     let id = session_id(&id)?;
     let form = read_form(fields)?;
     let decide = move |session: &Session| {
-        let reply = form.reply(session.alphabet())?;
+        let reply = form.reply(session.universe())?;
         Ok(session.change(form.number("question")?, &reply)?)
     };
     act(&app, id, Typed::default(), decide).await
@@ -325,7 +392,7 @@ async fn enlarge(
 }
 
 struct ExampleView {
-    word: WordView,
+    behaviour: BehaviourView,
     label: bool,
 }
 
@@ -348,9 +415,9 @@ async fn history(
         let bar = Bar::of(id.to_string(), session);
         let task = session.task();
         let known = task.examples.iter().filter_map(|example| {
-            let word = session.alphabet().word(&example.word).ok()?;
+            let atom = session.universe().parse(&example.atom).ok()?;
             Some(ExampleView {
-                word: WordView::of(&word, session),
+                behaviour: BehaviourView::of(&atom, session),
                 label: example.label,
             })
         });
@@ -375,9 +442,9 @@ async fn drawing(
     Path(id): Path<String>,
 ) -> Result<Response, PageError> {
     let id = session_id(&id)?;
-    let view = |session: &Session| {
-        let hypothesis = session.hypothesis().ok_or(WebError::NoAutomaton)?;
-        export::write(&hypothesis, session.task(), export::Format::Svg)
+    let view = |session: &Session| match session.hypothesis().ok_or(WebError::NoAutomaton)? {
+        Concept::Automaton(dfa) => export::write(&dfa, session.task(), export::Format::Svg),
+        Concept::Parameter(_) | Concept::Named(_) => Err(WebError::NotAnAutomaton),
     };
     let svg = app.teaching.look(id, view).await??;
     Ok(super::typed("image/svg+xml", svg))

@@ -5,11 +5,12 @@ use axum::extract::{Form as FormBody, FromRequest, Request, State};
 use axum::response::{IntoResponse, Redirect, Response};
 
 use super::AppState;
+use super::behaviour::{Chip, chips};
 use super::error::{PageError, WebError};
 use super::forms::Faults;
 use super::pages::read_form;
 use super::upload::{self, OwnRule};
-use super::views::{Chip, Shell, chips, render};
+use super::views::{Shell, render};
 use crate::session::{Malformed, Setup, Task, offered, ready};
 use crate::store::{Listed, SessionId};
 

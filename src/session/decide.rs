@@ -1,12 +1,10 @@
 //! What a person or a script wants to do, checked against where the session
 //! stands, and turned into the entry to append.
 
-use automata::{Dfa, Word};
-
 use super::event::{Event, ReplyText};
 use super::{Position, Session};
 use crate::learner::{Question, Reply};
-use crate::task::MAX_STATES;
+use crate::task::{Atom, Concept, MAX_STATES, Universe};
 
 /// What becomes of a wish.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,16 +52,16 @@ pub enum Refusal {
         /// The answers that fit.
         fitting: &'static str,
     },
-    /// The hypothesis already treats the word so.
+    /// The hypothesis already treats the behaviour so.
     #[error(
-        "this is no counterexample: the automaton shown already {} that word; give a word that it treats wrongly",
+        "this is no counterexample: the rule shown already {} that; give a behaviour that it treats wrongly",
         if *label { "accepts" } else { "rejects" }
     )]
     NoCounterexample {
         /// The label that was claimed.
         label: bool,
     },
-    /// The word cannot be shown.
+    /// The behaviour cannot be shown.
     #[error(
         "this cannot happen in the world of the task, so it says nothing here: give a behaviour that can"
     )]
@@ -77,9 +75,9 @@ pub enum Refusal {
         /// The label that was claimed.
         label: bool,
     },
-    /// An automaton shown long ago cannot be declared right afterwards.
+    /// A rule shown long ago cannot be declared right afterwards.
     #[error(
-        "the automaton of question {number} was refuted by a later look: withdraw this answer instead, and the question comes again if it is still open"
+        "the rule of question {number} was refuted by a later look: withdraw this answer instead, and the question comes again if it is still open"
     )]
     Outdated {
         /// The question.
@@ -88,6 +86,11 @@ pub enum Refusal {
     /// There is nothing to take back.
     #[error("there is no answer to take back yet")]
     NothingToUndo,
+    /// There is no bound on states.
+    #[error(
+        "this task learns no automaton, so it has no bound on states: withdraw or change an answer"
+    )]
+    NoBound,
     /// The bound cannot be set to this.
     #[error("give a bound larger than {now} and at most {MAX_STATES}")]
     BadBound {
@@ -102,7 +105,7 @@ impl Session {
     /// # Errors
     ///
     /// If the question is not open, or the reply does not fit it.
-    pub fn answer(&self, number: u32, reply: &Reply<Word>) -> Result<Decision, Refusal> {
+    pub fn answer(&self, number: u32, reply: &Reply<Atom>) -> Result<Decision, Refusal> {
         if *self.position() != Position::Asking(number) {
             return match self.answer_to(number) {
                 Some(standing) if standing.reply == *reply => Ok(Decision::Already(
@@ -117,7 +120,7 @@ impl Session {
         self.check_fit(number, reply)?;
         Ok(Decision::Append(Event::Answered {
             number,
-            reply: ReplyText::of(reply, self.alphabet()),
+            reply: ReplyText::of(reply, self.universe()),
         }))
     }
 
@@ -153,7 +156,7 @@ impl Session {
     /// # Errors
     ///
     /// If no answer stands there, or the new one does not fit.
-    pub fn change(&self, number: u32, reply: &Reply<Word>) -> Result<Decision, Refusal> {
+    pub fn change(&self, number: u32, reply: &Reply<Atom>) -> Result<Decision, Refusal> {
         let Some(standing) = self.answer_to(number) else {
             return Err(self.not_standing(number));
         };
@@ -166,7 +169,7 @@ impl Session {
         self.check_fit(number, reply)?;
         Ok(Decision::Append(Event::Changed {
             number,
-            reply: ReplyText::of(reply, self.alphabet()),
+            reply: ReplyText::of(reply, self.universe()),
         }))
     }
 
@@ -177,6 +180,9 @@ impl Session {
     /// If that is fewer than now, or beyond all bounds.
     pub fn enlarge(&self, max_states: usize) -> Result<Decision, Refusal> {
         let now = self.task().max_states;
+        if !matches!(self.universe(), Universe::Words { .. }) {
+            return Err(Refusal::NoBound);
+        }
         if max_states == now {
             return Ok(Decision::Already(self.position().clone()));
         }
@@ -187,7 +193,7 @@ impl Session {
     }
 
     /// Whether a reply fits the question of this number, which was asked.
-    fn check_fit(&self, number: u32, reply: &Reply<Word>) -> Result<(), Refusal> {
+    fn check_fit(&self, number: u32, reply: &Reply<Atom>) -> Result<(), Refusal> {
         let Some(asked) = self.asked(number) else {
             return Err(self.not_open(number));
         };
@@ -199,14 +205,14 @@ impl Session {
                 return self.check_counterexample(hypothesis, atom, *label);
             }
             (Question::Membership { .. }, _) => {
-                ("which judges one word", "`accept`, `reject` or `skip`")
+                ("which judges one behaviour", "`accept`, `reject` or `skip`")
             }
             (Question::Comparison { .. }, _) => (
-                "which compares two words",
+                "which compares two behaviours",
                 "`first`, `second`, `equal`, `incomparable` or `skip`",
             ),
             (Question::Equivalence { .. }, _) => {
-                ("which shows an automaton", "`correct` or `counterexample`")
+                ("which shows a rule", "`correct` or `counterexample`")
             }
         };
         Err(Refusal::Unfit {
@@ -216,10 +222,15 @@ impl Session {
         })
     }
 
-    /// Whether the word refutes the learned part, and may.
-    fn check_counterexample(&self, learned: &Dfa, word: &Word, label: bool) -> Result<(), Refusal> {
-        let mut says = learned.accepts(word);
-        if let Some(situation) = &self.situation {
+    /// Whether the behaviour refutes the learned part, and may.
+    fn check_counterexample(
+        &self,
+        learned: &Concept,
+        atom: &Atom,
+        label: bool,
+    ) -> Result<(), Refusal> {
+        let mut says = self.universe().accepts(learned, atom);
+        if let (Some(situation), Atom::Word(word)) = (self.situation(), atom) {
             if !situation.world.is_feasible(word) {
                 return Err(Refusal::Infeasible);
             }

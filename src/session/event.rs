@@ -1,14 +1,13 @@
 //! The entries of a session's log, with words as arrays of symbol names, so
 //! that a log can be read without the program.
 
-use automata::{Alphabet, Dfa, Word};
 use serde::{Deserialize, Serialize};
 
 use super::config::Setup;
 use crate::evidence::Comparison;
 use crate::identify::{Cause, Contradiction};
 use crate::learner::{Question, Reply, Round};
-use crate::task::{Automaton, Task, Unreadable};
+use crate::task::{Atom, AtomText, Bare, Concept, ConceptText, Task, Universe, Unreadable};
 
 /// The log's format; the first entry names it.
 pub const LOG_VERSION: u32 = 1;
@@ -75,10 +74,10 @@ pub enum Event {
         #[serde(flatten)]
         conflict: Conflict,
     },
-    /// The teacher agreed with this automaton.
+    /// The teacher agreed with this rule.
     Done {
         /// What was learned.
-        hypothesis: Automaton,
+        hypothesis: ConceptText,
     },
 }
 
@@ -134,105 +133,99 @@ impl Conflict {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum QuestionText {
-    /// Is this word acceptable?
+    /// Is this behaviour acceptable?
     Membership {
-        /// The word.
-        word: Vec<String>,
+        /// The behaviour.
+        #[serde(flatten)]
+        atom: AtomText,
     },
-    /// Which of two words is better?
+    /// Which of two behaviours is better?
     Comparison {
-        /// One word.
-        first: Vec<String>,
+        /// One behaviour.
+        #[serde(with = "Bare")]
+        first: AtomText,
         /// The other.
-        second: Vec<String>,
+        #[serde(with = "Bare")]
+        second: AtomText,
     },
-    /// Is this the automaton?
+    /// Is this the rule?
     Equivalence {
-        /// The automaton.
-        hypothesis: Automaton,
+        /// The rule.
+        hypothesis: ConceptText,
     },
 }
 
 /// An answer, as the log and the API show it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "answer", rename_all = "lowercase")]
 pub enum ReplyText {
-    /// The word is acceptable.
+    /// The behaviour is acceptable.
     Accept,
-    /// The word is not acceptable.
+    /// The behaviour is not acceptable.
     Reject,
-    /// The first word is better.
+    /// The first behaviour is better.
     First,
-    /// The second word is better.
+    /// The second behaviour is better.
     Second,
     /// Both are equally good or bad.
     Equal,
     /// The two cannot be compared.
     Incomparable,
-    /// The automaton is right.
+    /// The rule is right.
     Correct,
     /// No answer.
     Skip,
-    /// The automaton is wrong about this word.
+    /// The rule is wrong about this behaviour.
     Counterexample {
-        /// The word.
-        word: Vec<String>,
+        /// The behaviour.
+        #[serde(flatten)]
+        atom: AtomText,
         /// Whether it is acceptable.
         label: bool,
     },
 }
 
-fn names(alphabet: &Alphabet, word: &Word) -> Vec<String> {
-    alphabet.spell(word).map(str::to_owned).collect()
-}
-
-fn word(alphabet: &Alphabet, names: &[String]) -> Result<Word, Unreadable> {
-    alphabet
-        .word(names)
-        .map_err(|error| Unreadable(error.to_string()))
-}
-
 impl QuestionText {
-    /// The question in this alphabet's names.
-    pub fn of(question: &Question<Word, Dfa>, alphabet: &Alphabet) -> Self {
+    /// The question as this universe writes it.
+    pub fn of(question: &Question<Atom, Concept>, universe: &Universe) -> Self {
         match question {
             Question::Membership { atom } => Self::Membership {
-                word: names(alphabet, atom),
+                atom: universe.text(atom),
             },
             Question::Comparison { first, second } => Self::Comparison {
-                first: names(alphabet, first),
-                second: names(alphabet, second),
+                first: universe.text(first),
+                second: universe.text(second),
             },
             Question::Equivalence { hypothesis } => Self::Equivalence {
-                hypothesis: Automaton::of(hypothesis),
+                hypothesis: universe.rule(hypothesis),
             },
         }
     }
 
-    /// The question over this alphabet.
+    /// The question about this universe.
     ///
     /// # Errors
     ///
-    /// If a name is not in the alphabet, or the hypothesis is no automaton.
-    pub fn read(&self, alphabet: &Alphabet) -> Result<Question<Word, Dfa>, Unreadable> {
+    /// If it is about something else.
+    pub fn read(&self, universe: &Universe) -> Result<Question<Atom, Concept>, Unreadable> {
         Ok(match self {
-            Self::Membership { word: w } => Question::Membership {
-                atom: word(alphabet, w)?,
+            Self::Membership { atom } => Question::Membership {
+                atom: universe.parse(atom)?,
             },
             Self::Comparison { first, second } => Question::Comparison {
-                first: word(alphabet, first)?,
-                second: word(alphabet, second)?,
+                first: universe.parse(first)?,
+                second: universe.parse(second)?,
             },
             Self::Equivalence { hypothesis } => Question::Equivalence {
-                hypothesis: hypothesis.read(alphabet)?,
+                hypothesis: universe.parse_rule(hypothesis)?,
             },
         })
     }
 }
 
 impl ReplyText {
-    /// The reply in this alphabet's names.
-    pub fn of(reply: &Reply<Word>, alphabet: &Alphabet) -> Self {
+    /// The reply as this universe writes it.
+    pub fn of(reply: &Reply<Atom>, universe: &Universe) -> Self {
         match reply {
             Reply::Accept => Self::Accept,
             Reply::Reject => Self::Reject,
@@ -243,18 +236,18 @@ impl ReplyText {
             Reply::Correct => Self::Correct,
             Reply::Skip => Self::Skip,
             Reply::Counterexample { atom, label } => Self::Counterexample {
-                word: names(alphabet, atom),
+                atom: universe.text(atom),
                 label: *label,
             },
         }
     }
 
-    /// The reply over this alphabet.
+    /// The reply about this universe.
     ///
     /// # Errors
     ///
-    /// If a name is not in the alphabet.
-    pub fn read(&self, alphabet: &Alphabet) -> Result<Reply<Word>, Unreadable> {
+    /// If it is about something else.
+    pub fn read(&self, universe: &Universe) -> Result<Reply<Atom>, Unreadable> {
         Ok(match self {
             Self::Accept => Reply::Accept,
             Self::Reject => Reply::Reject,
@@ -264,8 +257,8 @@ impl ReplyText {
             Self::Incomparable => Reply::Compared(Comparison::Incomparable),
             Self::Correct => Reply::Correct,
             Self::Skip => Reply::Skip,
-            Self::Counterexample { word: w, label } => Reply::Counterexample {
-                atom: word(alphabet, w)?,
+            Self::Counterexample { atom, label } => Reply::Counterexample {
+                atom: universe.parse(atom)?,
                 label: *label,
             },
         })

@@ -2,6 +2,7 @@
 
 use super::{Conflict, ConflictCause, Session};
 use crate::learner::Question;
+use crate::task::Universe;
 
 impl Session {
     /// One or two sentences about the answers of a conflict of this session,
@@ -11,6 +12,9 @@ impl Session {
         let with_known = "Together with what was known at the start,";
         let bound = conflict.bound.unwrap_or(self.task().max_states);
         match conflict.cause {
+            ConflictCause::States if !matches!(self.universe(), Universe::Words { .. }) => {
+                format!("No rule of the kind that this task learns fits {}.", if single { "it" } else { "them" })
+            }
             ConflictCause::States => {
                 let them = match conflict.answers.len() {
                     0 => "what was known at the start",

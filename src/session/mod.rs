@@ -19,8 +19,6 @@ mod rule;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use automata::{Alphabet, Dfa, Word};
-
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
@@ -29,10 +27,9 @@ pub use ready::{NAMES as READY_NAMES, offered, ready};
 use self::pupil::Pupil;
 use crate::evidence::AnswerId;
 use crate::learner::{Counts, Question, Reply, Round, Step};
-use crate::task::Situation;
 pub use crate::task::{
-    Automaton, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES, MAX_STATES, MAX_SYMBOLS, MAX_WORD,
-    Malformed, SymbolText, Task, read_word,
+    Atom, AtomText, Automaton, Concept, ConceptText, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES,
+    MAX_STATES, MAX_SYMBOLS, MAX_WORD, Malformed, SymbolText, Task, Universe, read_word,
 };
 use crate::world::World;
 
@@ -40,7 +37,7 @@ use crate::world::World;
 #[derive(Clone, Debug)]
 pub struct Asked {
     /// The question.
-    pub question: Question<Word, Dfa>,
+    pub question: Question<Atom, Concept>,
     /// Whether the budget ended before the best one was found.
     pub hurried: bool,
     round: Option<Round>,
@@ -52,7 +49,7 @@ pub struct Standing {
     /// The number of the question that it answers.
     pub number: u32,
     /// The answer.
-    pub reply: Reply<Word>,
+    pub reply: Reply<Atom>,
     /// What the learner did next, once it has; none for a mended answer.
     then: Option<Position>,
 }
@@ -66,8 +63,8 @@ pub enum Position {
     Asking(u32),
     /// Some standing answers contradict each other.
     Conflict(Conflict),
-    /// The teacher agreed with this automaton, or the part of it that is learned.
-    Done(Dfa),
+    /// The teacher agreed with this rule, or the part of it that is learned.
+    Done(Concept),
 }
 
 /// A log that cannot be folded: it was not written by this program, or by a
@@ -85,10 +82,8 @@ pub struct Corrupt {
 pub struct Session {
     task: Task,
     setup: Setup,
-    alphabet: Alphabet,
-    /// None where all words are asked about, and nothing is known beforehand.
-    situation: Option<Situation>,
-    learner: Pupil,
+    universe: Universe,
+    learner: Box<dyn Pupil>,
     asked: BTreeMap<u32, Asked>,
     standing: Vec<Standing>,
     withdrawn: BTreeSet<u32>,
@@ -152,14 +147,11 @@ impl Session {
     }
 
     fn new(task: Task, setup: Setup, world: Option<Arc<World>>) -> Result<Self, String> {
-        let alphabet = task.alphabet();
-        let situation = task
-            .situation_in(world)
-            .map_err(|error| error.to_string())?;
+        let universe = task.universe_in(world);
+        let universe = universe.map_err(|error| error.to_string())?;
         Ok(Self {
-            learner: Pupil::new(&task, situation.as_ref(), &setup, &alphabet)?,
-            situation,
-            alphabet,
+            learner: pupil::new(&task, &universe, &setup)?,
+            universe,
             task,
             setup,
             asked: BTreeMap::new(),
@@ -198,7 +190,7 @@ impl Session {
                 if *number != self.next_number() {
                     return Err(format!("question {number} comes out of turn"));
                 }
-                let question = question.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let question = question.read(&self.universe).map_err(|e| e.to_string())?;
                 let asked = Asked {
                     question,
                     hurried: *hurried,
@@ -212,7 +204,7 @@ impl Session {
                 if self.position != Position::Asking(*number) {
                     return Err(format!("question {number} is not open"));
                 }
-                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 self.record(*number, &reply)?;
                 self.standing.push(Standing {
                     number: *number,
@@ -228,7 +220,7 @@ impl Session {
                 Ok(())
             }
             Event::Changed { number, reply } => {
-                let reply = reply.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 let Some(standing) = self.standing.iter_mut().find(|s| s.number == *number) else {
                     return Err(format!("question {number} has no standing answer"));
                 };
@@ -251,7 +243,8 @@ impl Session {
             }
             Event::Done { hypothesis } => {
                 self.expect_thinking()?;
-                let hypothesis = hypothesis.read(&self.alphabet).map_err(|e| e.to_string())?;
+                let hypothesis = self.universe.parse_rule(hypothesis);
+                let hypothesis = hypothesis.map_err(|e| e.to_string())?;
                 self.arrive(Position::Done(hypothesis));
                 Ok(())
             }
@@ -273,13 +266,13 @@ impl Session {
                 hurried,
             } => Event::Asked {
                 number: self.next_number(),
-                question: QuestionText::of(&question, &self.alphabet),
+                question: QuestionText::of(&question, &self.universe),
                 round,
                 hurried,
             },
             Step::Conflict(contradiction) => Event::conflict(&contradiction),
             Step::Done { hypothesis } => Event::Done {
-                hypothesis: Automaton::of(&hypothesis),
+                hypothesis: self.universe.rule(&hypothesis),
             },
         })
     }
@@ -307,7 +300,7 @@ impl Session {
         self.awaiting = answer;
     }
 
-    fn record(&mut self, number: u32, reply: &Reply<Word>) -> Result<(), String> {
+    fn record(&mut self, number: u32, reply: &Reply<Atom>) -> Result<(), String> {
         let Some(asked) = self.asked.get(&number) else {
             return Err(format!("question {number} was never asked"));
         };
@@ -334,8 +327,7 @@ impl Session {
 
     /// A learner that was told the standing answers as they are now, in order.
     fn rebuild(&mut self) -> Result<(), String> {
-        let situation = self.situation.as_ref();
-        self.learner = Pupil::new(&self.task, situation, &self.setup, &self.alphabet)?;
+        self.learner = pupil::new(&self.task, &self.universe, &self.setup)?;
         let replies: Vec<_> = self
             .standing
             .iter()
@@ -360,9 +352,9 @@ impl Session {
         &self.setup
     }
 
-    /// The alphabet of the task's symbols.
-    pub fn alphabet(&self) -> &Alphabet {
-        &self.alphabet
+    /// The behaviours of the task, and the rules that can be learned of them.
+    pub fn universe(&self) -> &Universe {
+        &self.universe
     }
 
     /// Where the session stands.

@@ -1,92 +1,175 @@
-//! The learner of a session: over all words, or in a world beside what is known
-//! beforehand.
-
-use automata::{Alphabet, Dfa, Word};
+//! The learner of a session, whatever class it learns.
 
 use super::Setup;
-use crate::concept::{DfaClass, Situated};
+use crate::concept::{ConceptClass, DfaClass};
 use crate::evidence::AnswerId;
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
-use crate::task::{Situation, Task};
+use crate::task::{Atom, Concept, Task, Universe};
 
-/// Both learn automata over words; only which words they ask about differs.
-pub(super) enum Pupil {
-    Anywhere(Box<Learner<DfaClass>>),
-    Situated(Box<Learner<Situated>>),
-}
+/// A learner that is told and asks in the words of every class.
+pub(super) trait Pupil: Send {
+    fn next(&mut self) -> Step<Atom, Concept>;
 
-impl Pupil {
-    /// A learner that was told no answer yet.
-    ///
-    /// # Errors
-    ///
-    /// If what is known at the start does not fit the situation, of a task that was
-    /// not read but put together.
-    pub(super) fn new(
-        task: &Task,
-        situation: Option<&Situation>,
-        setup: &Setup,
-        alphabet: &Alphabet,
-    ) -> Result<Self, String> {
-        let settings = Settings {
-            engine: EngineChoice::Auto,
-            max_states: task.max_states,
-        };
-        let known = task.known(alphabet);
-        let Some(situation) = situation else {
-            let class = DfaClass::new(alphabet.clone(), settings);
-            let learner = Learner::new(class, setup.config(), known);
-            return Ok(Self::Anywhere(Box::new(learner)));
-        };
-        let class = situation
-            .class(settings)
-            .map_err(|error| error.to_string())?;
-        let known = class.examples(&known).map_err(|error| error.to_string())?;
-        let learner = Learner::new(class, setup.config(), known);
-        Ok(Self::Situated(Box::new(learner)))
-    }
-
-    pub(super) fn next(&mut self) -> Step<Word, Dfa> {
-        match self {
-            Self::Anywhere(learner) => learner.next(),
-            Self::Situated(learner) => learner.next(),
-        }
-    }
-
-    pub(super) fn record(
+    /// Says why where the answer makes no sense.
+    fn record(
         &mut self,
         answer: AnswerId,
-        question: Question<Word, Dfa>,
+        question: Question<Atom, Concept>,
         round: Option<Round>,
-        reply: Reply<Word>,
-    ) -> Result<(), String> {
-        match self {
-            Self::Anywhere(learner) => learner.record(answer, question, round, reply),
-            Self::Situated(learner) => learner.record(answer, question, round, reply),
-        }
-        .map_err(|error| error.to_string())
-    }
+        reply: Reply<Atom>,
+    ) -> Result<(), String>;
 
-    pub(super) fn retract(&mut self, answer: AnswerId) -> bool {
-        match self {
-            Self::Anywhere(learner) => learner.retract(answer),
-            Self::Situated(learner) => learner.retract(answer),
-        }
-    }
+    fn retract(&mut self, answer: AnswerId) -> bool;
+
+    fn counts(&self) -> Counts;
 
     /// What nothing that can be shown tells about this hypothesis.
-    pub(super) fn beyond(&self, hypothesis: &Dfa) -> Option<Word> {
-        match self {
-            Self::Anywhere(_) => None,
-            Self::Situated(learner) => learner.class().beyond(hypothesis),
+    fn beyond(&self, hypothesis: &Concept) -> Option<Atom>;
+}
+
+/// A learner that was told no answer yet.
+///
+/// # Errors
+///
+/// If what is known at the start does not fit the situation, of a task that was not
+/// read but put together.
+pub(super) fn new(
+    task: &Task,
+    universe: &Universe,
+    setup: &Setup,
+) -> Result<Box<dyn Pupil>, String> {
+    let settings = Settings {
+        engine: EngineChoice::Auto,
+        max_states: task.max_states,
+    };
+    let config = setup.config();
+    Ok(match universe {
+        Universe::Words {
+            alphabet,
+            situation: None,
+        } => {
+            let class = DfaClass::new(alphabet.clone(), settings);
+            Box::new(Learner::new(class, config, task.known(universe)))
+        }
+        Universe::Words {
+            situation: Some(situation),
+            ..
+        } => {
+            let class = situation.class(settings);
+            let class = class.map_err(|error| error.to_string())?;
+            let known = class.examples(&task.known(universe));
+            let known = known.map_err(|error| error.to_string())?;
+            Box::new(Learner::new(class, config, known))
+        }
+        Universe::Monotone(axes) => {
+            Box::new(Learner::new(axes.class(), config, task.known(universe)))
+        }
+        Universe::Finite(table) => {
+            let class = table.class().clone();
+            Box::new(Learner::new(class, config, task.known(universe)))
+        }
+        Universe::Linear(rewards) => {
+            Box::new(Learner::new(rewards.class(), config, task.known(universe)))
+        }
+    })
+}
+
+impl<C> Pupil for Learner<C>
+where
+    C: ConceptClass + Send,
+    C::Atom: TryFrom<Atom> + Send,
+    C::Concept: TryFrom<Concept> + Send,
+    Atom: From<C::Atom>,
+    Concept: From<C::Concept>,
+{
+    fn next(&mut self) -> Step<Atom, Concept> {
+        match Learner::next(self) {
+            Step::Ask {
+                question,
+                round,
+                hurried,
+            } => Step::Ask {
+                question: outward(question),
+                round,
+                hurried,
+            },
+            Step::Conflict(contradiction) => Step::Conflict(contradiction),
+            Step::Done { hypothesis } => Step::Done {
+                hypothesis: hypothesis.into(),
+            },
         }
     }
 
-    pub(super) fn counts(&self) -> Counts {
-        match self {
-            Self::Anywhere(learner) => learner.counts(),
-            Self::Situated(learner) => learner.counts(),
-        }
+    fn record(
+        &mut self,
+        answer: AnswerId,
+        question: Question<Atom, Concept>,
+        round: Option<Round>,
+        reply: Reply<Atom>,
+    ) -> Result<(), String> {
+        let foreign = || "it is about another class than the task's".to_owned();
+        let question = inward(question).ok_or_else(foreign)?;
+        let reply = told(reply).ok_or_else(foreign)?;
+        Learner::record(self, answer, question, round, reply).map_err(|error| error.to_string())
     }
+
+    fn retract(&mut self, answer: AnswerId) -> bool {
+        Learner::retract(self, answer)
+    }
+
+    fn counts(&self) -> Counts {
+        Learner::counts(self)
+    }
+
+    fn beyond(&self, hypothesis: &Concept) -> Option<Atom> {
+        let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
+        self.class().beyond(&hypothesis).map(Atom::from)
+    }
+}
+
+fn outward<A: Into<Atom>, C: Into<Concept>>(question: Question<A, C>) -> Question<Atom, Concept> {
+    match question {
+        Question::Membership { atom } => Question::Membership { atom: atom.into() },
+        Question::Comparison { first, second } => Question::Comparison {
+            first: first.into(),
+            second: second.into(),
+        },
+        Question::Equivalence { hypothesis } => Question::Equivalence {
+            hypothesis: hypothesis.into(),
+        },
+    }
+}
+
+/// None if it is about another class.
+fn inward<A: TryFrom<Atom>, C: TryFrom<Concept>>(
+    question: Question<Atom, Concept>,
+) -> Option<Question<A, C>> {
+    Some(match question {
+        Question::Membership { atom } => Question::Membership {
+            atom: A::try_from(atom).ok()?,
+        },
+        Question::Comparison { first, second } => Question::Comparison {
+            first: A::try_from(first).ok()?,
+            second: A::try_from(second).ok()?,
+        },
+        Question::Equivalence { hypothesis } => Question::Equivalence {
+            hypothesis: C::try_from(hypothesis).ok()?,
+        },
+    })
+}
+
+/// None if it is about another class.
+fn told<A: TryFrom<Atom>>(reply: Reply<Atom>) -> Option<Reply<A>> {
+    Some(match reply {
+        Reply::Accept => Reply::Accept,
+        Reply::Reject => Reply::Reject,
+        Reply::Compared(comparison) => Reply::Compared(comparison),
+        Reply::Correct => Reply::Correct,
+        Reply::Skip => Reply::Skip,
+        Reply::Counterexample { atom, label } => Reply::Counterexample {
+            atom: A::try_from(atom).ok()?,
+            label,
+        },
+    })
 }

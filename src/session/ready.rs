@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use crate::task::{
-    Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task, TaskFile,
+    AtomText, Costs, DEFAULT_STATES, Example, MAX_STATES, Malformed, PriorText, SymbolText, Task,
+    TaskFile,
 };
 
 /// The names under which [`ready`] finds a task, for people.
@@ -120,7 +121,7 @@ fn robot() -> Task {
     };
     let example = |label: bool| {
         move |word: &str| Example {
-            word: word.chars().map(String::from).collect(),
+            atom: AtomText::Word(word.chars().map(String::from).collect()),
             label,
         }
     };
@@ -129,6 +130,7 @@ fn robot() -> Task {
     Task {
         name: "robot".to_owned(),
         title: "Robot recharge".to_owned(),
+        class: None,
         symbols: vec![
             symbol("R", "lava"),
             symbol("Y", "recharge"),
@@ -164,6 +166,7 @@ fn modulo(divisor: usize) -> Task {
     Task {
         name: format!("modulo:{divisor}"),
         title: format!("Count to {divisor}"),
+        class: None,
         symbols: plain(["a"]),
         examples: empty_word_accepted(),
         max_states: bound(divisor),
@@ -183,6 +186,7 @@ fn binary(name: String, title: String, rule: &str, needed: usize) -> Task {
     Task {
         name,
         title,
+        class: None,
         symbols: plain(["0", "1"]),
         examples: empty_word_accepted(),
         max_states: bound(needed),
@@ -202,7 +206,7 @@ fn plain<const N: usize>(names: [&str; N]) -> Vec<SymbolText> {
 
 fn empty_word_accepted() -> Vec<Example> {
     vec![Example {
-        word: Vec::new(),
+        atom: AtomText::Word(Vec::new()),
         label: true,
     }]
 }

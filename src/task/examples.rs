@@ -1,4 +1,4 @@
-//! Words in tasks and requests: examples known at the start, and the practice
+//! Behaviours in tasks and requests: examples known at the start, and the practice
 //! question.
 
 use std::collections::BTreeMap;
@@ -8,20 +8,21 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::reader::{Faults, Fields, Malformed};
-use super::situation::Situation;
+use super::universe::{Atom, AtomText, Bare, Universe};
 use super::{MAX_EXAMPLES, MAX_WORD};
 
-/// A word whose label is known before the first question.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+/// A behaviour whose label is known before the first question.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Example {
-    /// Symbol names, in order.
-    pub word: Vec<String>,
+    /// The behaviour.
+    #[serde(flatten)]
+    pub atom: AtomText,
     /// Whether it is acceptable.
     pub label: bool,
 }
 
 /// A question with its answer, by which a person learns what is meant.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Practice {
     /// What is asked.
     #[serde(flatten)]
@@ -33,20 +34,19 @@ pub struct Practice {
 }
 
 /// What a practice question asks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Practised {
     /// Is this acceptable?
-    Judgement {
-        /// Symbol names, in order.
-        word: Vec<String>,
-    },
+    Judgement(AtomText),
     /// Which is better?
     Comparison {
-        /// One word.
-        first: Vec<String>,
+        /// One behaviour.
+        #[serde(with = "Bare")]
+        first: AtomText,
         /// The other.
-        second: Vec<String>,
+        #[serde(with = "Bare")]
+        second: AtomText,
     },
 }
 
@@ -93,13 +93,8 @@ pub fn read_word(value: &Value, path: &str, alphabet: &Alphabet) -> Result<Word,
 }
 
 /// The examples under `examples`, without repetitions. Each must be possible in the
-/// situation.
-pub(super) fn read(
-    fields: &Fields<'_>,
-    alphabet: &Alphabet,
-    situation: Option<&Situation>,
-    faults: &mut Faults,
-) -> Vec<Example> {
+/// world of the task, and all together for its class.
+pub(super) fn read(fields: &Fields<'_>, universe: &Universe, faults: &mut Faults) -> Vec<Example> {
     let list = faults.keep(fields.list("examples")).unwrap_or_default();
     if list.len() > MAX_EXAMPLES {
         faults.0.push(Malformed::new(
@@ -111,65 +106,67 @@ pub(super) fn read(
         ));
         return Vec::new();
     }
-    let mut seen: BTreeMap<Word, (usize, bool)> = BTreeMap::new();
+    let mut seen: BTreeMap<Atom, (usize, bool)> = BTreeMap::new();
     let mut kept = Vec::with_capacity(list.len());
     for (place, value) in list.iter().enumerate() {
         let path = format!("examples[{place}]");
-        let Some((word, label)) = faults.keep(read_example(value, &path, alphabet)) else {
+        let Some((atom, label)) = faults.keep(read_example(value, &path, universe)) else {
             continue;
         };
-        match seen.get(&word) {
+        match seen.get(&atom) {
             Some((_, known)) if *known == label => continue,
             Some((first, _)) => {
                 faults.0.push(Malformed::new(
                     path,
                     format!(
-                        "this word has the other label at examples[{first}]: keep one of the two"
+                        "this {} has the other label at examples[{first}]: keep one of the two",
+                        universe.key()
                     ),
                 ));
                 continue;
             }
             None => {}
         }
-        if let Some(situation) = situation {
-            faults.keep(situation.check(&word, Some(label), &path));
-        }
+        faults.keep(check(universe, &atom, Some(label), &path));
         kept.push(Example {
-            word: names(&word, alphabet),
+            atom: universe.text(&atom),
             label,
         });
-        seen.insert(word, (place, label));
+        seen.insert(atom, (place, label));
+    }
+    let labels = seen.into_iter().map(|(atom, (_, label))| (atom, label));
+    if !universe.has_rule(labels.collect()) {
+        faults.0.push(Malformed::new(
+            "examples",
+            "no rule of the task's `class` fits all of these: correct one of them, or widen the class",
+        ));
     }
     kept
 }
 
-/// Checks that the examples and the practice question are possible in the situation.
+/// Checks again that the examples and the practice question can happen, once their
+/// world is there.
 ///
 /// # Errors
 ///
-/// Names the first that is not.
-pub(super) fn check(
+/// Names the first that cannot.
+pub(super) fn check_all(
     examples: &[Example],
     practice: Option<&Practice>,
-    alphabet: &Alphabet,
-    situation: &Situation,
+    universe: &Universe,
 ) -> Result<(), Malformed> {
-    let one = |names: &[String], label, path: &str| {
-        let word = alphabet
-            .word(names)
-            .map_err(|error| Malformed::new(path, error.to_string()))?;
-        situation.check(&word, label, path)
+    let one = |atom: &AtomText, label, path: &str| {
+        let atom = universe.parse(atom);
+        let atom = atom.map_err(|error| Malformed::new(path, error.to_string()))?;
+        check(universe, &atom, label, path)
     };
     for (place, example) in examples.iter().enumerate() {
-        one(
-            &example.word,
-            Some(example.label),
-            &format!("examples[{place}]"),
-        )?;
+        let path = format!("examples[{place}]");
+        one(&example.atom, Some(example.label), &path)?;
     }
     match practice.map(|practice| &practice.asks) {
         None => Ok(()),
-        Some(Practised::Judgement { word }) => one(word, None, "practice.word"),
+        Some(Practised::Judgement(atom)) => one(atom, None, "practice.word"),
         Some(Practised::Comparison { first, second }) => {
             one(first, None, "practice.first")?;
             one(second, None, "practice.second")
@@ -177,64 +174,80 @@ pub(super) fn check(
     }
 }
 
-fn names(word: &Word, alphabet: &Alphabet) -> Vec<String> {
-    alphabet.spell(word).map(str::to_owned).collect()
+/// Checks that a behaviour can happen, and that its label is not known otherwise.
+fn check(
+    universe: &Universe,
+    atom: &Atom,
+    label: Option<bool>,
+    path: &str,
+) -> Result<(), Malformed> {
+    match (universe.situation(), atom) {
+        (Some(situation), Atom::Word(word)) => situation.check(word, label, path),
+        _ => Ok(()),
+    }
 }
 
-fn read_example(value: &Value, path: &str, alphabet: &Alphabet) -> Result<(Word, bool), Malformed> {
+fn read_example(value: &Value, path: &str, universe: &Universe) -> Result<(Atom, bool), Malformed> {
+    let key = universe.key();
     let fields = Fields::of(value, path).map_err(|_| {
+        let one = match universe {
+            Universe::Words { .. } => "[\"a\"]",
+            Universe::Monotone(_) => "[1.5, 20]",
+            Universe::Finite(_) | Universe::Linear(_) => "\"a\"",
+        };
         Malformed::new(
             path,
-            "give an example as `{\"word\": [\"a\"], \"label\": true}`",
+            format!("give an example as `{{\"{key}\": {one}, \"label\": true}}`"),
         )
     })?;
-    fields.only(&["word", "label"])?;
-    let Some(word) = value.get("word") else {
-        return Err(Malformed::new(path, "this example has no `word`: give one"));
+    fields.only(&[key, "label"])?;
+    let Some(atom) = fields.get(key) else {
+        return Err(Malformed::new(
+            path,
+            format!("this example has no `{key}`: give one"),
+        ));
     };
-    let word = read_word(word, &format!("{path}.word"), alphabet)?;
+    let atom = universe.read(atom, &format!("{path}.{key}"))?;
     let Some(label) = value.get("label").and_then(Value::as_bool) else {
         return Err(Malformed::new(
             format!("{path}.label"),
-            "say `true` if the word is acceptable, `false` if it is not",
+            format!("say `true` if the {key} is acceptable, `false` if it is not"),
         ));
     };
-    Ok((word, label))
+    Ok((atom, label))
 }
 
 /// The question under `practice`, if there is one.
 pub(super) fn read_practice(
     fields: &Fields<'_>,
-    alphabet: &Alphabet,
-    situation: Option<&Situation>,
+    universe: &Universe,
 ) -> Result<Option<Practice>, Malformed> {
-    const FORM: &str = "give either one `word`, or `first` and `second` to be compared";
     let Some(value) = fields.get("practice") else {
         return Ok(None);
     };
+    let key = universe.key();
     let fields = Fields::of(value, "practice")?;
-    fields.only(&["word", "first", "second", "answer", "why"])?;
-    let read = |key: &str| -> Result<Option<Word>, Malformed> {
+    fields.only(&[key, "first", "second", "answer", "why"])?;
+    let read = |key: &str| -> Result<Option<AtomText>, Malformed> {
         let Some(value) = fields.get(key) else {
             return Ok(None);
         };
         let path = fields.path_of(key);
-        let word = read_word(value, &path, alphabet)?;
-        if let Some(situation) = situation {
-            situation.check(&word, None, &path)?;
-        }
-        Ok(Some(word))
+        let atom = universe.read(value, &path)?;
+        check(universe, &atom, None, &path)?;
+        Ok(Some(universe.text(&atom)))
     };
-    let (asks, answers) = match (read("word")?, read("first")?, read("second")?) {
-        (Some(word), None, None) => {
-            let word = names(&word, alphabet);
-            (Practised::Judgement { word }, &JUDGEMENTS[..])
-        }
+    let (asks, answers) = match (read(key)?, read("first")?, read("second")?) {
+        (Some(atom), None, None) => (Practised::Judgement(atom), &JUDGEMENTS[..]),
         (None, Some(first), Some(second)) => {
-            let [first, second] = [first, second].map(|word| names(&word, alphabet));
             (Practised::Comparison { first, second }, &COMPARISONS[..])
         }
-        _ => return Err(Malformed::new("practice", FORM)),
+        _ => {
+            return Err(Malformed::new(
+                "practice",
+                format!("give either one `{key}`, or `first` and `second` to be compared"),
+            ));
+        }
     };
     let given = fields.text("answer", 60)?.unwrap_or_default();
     let Some(&answer) = answers.iter().find(|answer| **answer == given) else {

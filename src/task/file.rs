@@ -3,10 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use automata::Dfa;
-
 use super::places::{self, Place, Places};
-use super::situation::{Files, Situation};
+use super::situation::Files;
+use super::universe::{Concept, Universe};
 use super::{Malformed, Task};
 
 /// A task with what only a file has.
@@ -16,12 +15,11 @@ pub struct TaskFile {
     pub task: Task,
     /// The bound on states, where the file tells.
     pub max_states: Option<usize>,
-    /// The world and what is known beforehand; none where all words are asked about
-    /// and nothing is known.
-    pub situation: Option<Situation>,
-    /// What a scripted teacher has in mind: the whole language, not the part that
-    /// is learned.
-    pub target: Option<Dfa>,
+    /// Its behaviours, and what can be learned of them.
+    pub universe: Universe,
+    /// What a scripted teacher has in mind: of automata the whole language, not the
+    /// part that is learned.
+    pub target: Option<Concept>,
 }
 
 /// One thing that is wrong with a task file.
@@ -149,7 +147,7 @@ fn read(value: &serde_json::Value, folder: &Path) -> Result<TaskFile, Vec<Malfor
     Ok(TaskFile {
         task: read.task,
         max_states: read.max_states,
-        situation: read.situation,
+        universe: read.universe,
         target: read.target,
     })
 }

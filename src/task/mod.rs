@@ -6,21 +6,26 @@
 //! or how questions are chosen beyond the strategy's name.
 
 mod automaton;
+mod class;
 mod costs;
 mod examples;
 mod file;
 mod places;
 mod reader;
 mod situation;
+mod subject;
 mod symbols;
+mod target;
+mod universe;
 
 use std::sync::Arc;
 
-use automata::{Alphabet, Dfa, Symbol, Word};
+use automata::{Alphabet, Dfa, Symbol};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use automaton::{Automaton, Unreadable};
+pub use class::ClassText;
 pub use costs::{Costs, read_cost, read_strategy};
 pub use examples::{Example, Practice, Practised, read_word};
 pub use file::{Fault, TaskFile, Unusable};
@@ -28,13 +33,18 @@ pub use reader::{Fields, Malformed};
 pub(crate) use situation::{LONGEST, STEPS};
 pub use situation::{PriorText, Rule, Situation, Source, WorldText};
 pub use symbols::{Colour, SymbolText};
+pub(crate) use universe::Bare;
+pub use universe::{
+    Atom, AtomText, Axes, Axis, BehaviourText, Concept, ConceptText, OffGrid, Picture, Rewards,
+    Saved, Universe,
+};
 
 use self::reader::Faults;
 use self::situation::Files;
+use self::subject::Subject;
 use crate::concept::Prior;
 use crate::evidence::Fact;
 use crate::learner::Strategy;
-use crate::oracle::Target;
 use crate::world::World;
 
 /// The largest number of symbols a taught alphabet may have: more cannot be
@@ -63,8 +73,12 @@ pub struct Task {
     pub name: String,
     /// One line for people.
     pub title: String,
-    /// The alphabet, in order.
+    /// The alphabet, in order; empty where the behaviours are no words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub symbols: Vec<SymbolText>,
+    /// What is learned in place of an automaton.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<ClassText>,
     /// What is known at the start; no word stands twice.
     pub examples: Vec<Example>,
     /// The largest number of states considered, until it is raised.
@@ -93,6 +107,7 @@ pub struct Task {
 const KEYS: &[&str] = &[
     "name",
     "title",
+    "class",
     "symbols",
     "colours",
     "world",
@@ -111,8 +126,8 @@ struct Read {
     task: Task,
     /// The bound on states, where it is told.
     max_states: Option<usize>,
-    situation: Option<Situation>,
-    target: Option<Dfa>,
+    universe: Universe,
+    target: Option<Concept>,
 }
 
 impl Task {
@@ -139,31 +154,48 @@ impl Task {
         file::content(text)
     }
 
-    /// The alphabet of the symbols' names.
-    ///
-    /// # Panics
-    ///
-    /// If the task was put together by hand, and its names make no alphabet.
-    pub fn alphabet(&self) -> Alphabet {
-        Alphabet::new(self.symbols.iter().map(|symbol| symbol.name.as_str()))
-            .expect("a task's symbols were checked when it was read")
+    /// The alphabet of the symbols' names; none where the behaviours are no words.
+    pub fn alphabet(&self) -> Option<Alphabet> {
+        symbols::alphabet(&self.symbols).ok()
     }
 
-    /// What is known at the start, as facts over [`Task::alphabet`].
+    /// What is known at the start, as facts about the atoms of one class.
     ///
-    /// # Panics
-    ///
-    /// If the task was put together by hand, and an example uses other names.
-    pub fn known(&self, alphabet: &Alphabet) -> Vec<Fact<Word>> {
-        self.examples
-            .iter()
-            .map(|example| Fact::Label {
-                atom: alphabet
-                    .word(&example.word)
-                    .expect("a task's examples were checked when it was read"),
+    /// Examples of another class, which only a task that was put together by hand
+    /// has, are left out.
+    pub fn known<A: TryFrom<Atom>>(&self, universe: &Universe) -> Vec<Fact<A>> {
+        let facts = self.examples.iter().filter_map(|example| {
+            let atom = universe.parse(&example.atom).ok()?;
+            Some(Fact::Label {
+                atom: A::try_from(atom).ok()?,
                 accepted: example.label,
             })
-            .collect()
+        });
+        facts.collect()
+    }
+
+    /// Its behaviours, and what can be learned of them.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Task::situation`].
+    pub fn universe(&self) -> Result<Universe, Malformed> {
+        self.universe_in(None)
+    }
+
+    /// The same in this world, where the task's is an [upload](Self::upload).
+    ///
+    /// # Errors
+    ///
+    /// As for [`Task::situation_in`].
+    pub fn universe_in(&self, world: Option<Arc<World>>) -> Result<Universe, Malformed> {
+        if let Some(class) = &self.class {
+            return class.universe();
+        }
+        Ok(Universe::Words {
+            alphabet: symbols::alphabet(&self.symbols)?,
+            situation: self.situation_in(world)?,
+        })
     }
 
     /// Its world and what is known beforehand; none where all words are asked about
@@ -186,7 +218,7 @@ impl Task {
         if world.is_none() && self.world.is_none() && self.prior.is_empty() {
             return Ok(None);
         }
-        let alphabet = self.alphabet();
+        let alphabet = symbols::alphabet(&self.symbols)?;
         let world = match world {
             Some(world) => world,
             None => Arc::new(situation::build_world(
@@ -212,15 +244,8 @@ impl Task {
     ///
     /// Names the first that is not.
     pub fn check_in(&self, world: Arc<World>) -> Result<(), Malformed> {
-        let Some(situation) = self.situation_in(Some(world))? else {
-            return Ok(());
-        };
-        examples::check(
-            &self.examples,
-            self.practice.as_ref(),
-            &self.alphabet(),
-            &situation,
-        )
+        let universe = self.universe_in(Some(world))?;
+        examples::check_all(&self.examples, self.practice.as_ref(), &universe)
     }
 
     /// The name of the upload that the task's world is, if it is one.
@@ -238,7 +263,7 @@ impl Task {
         symbols::marks(&self.symbols)
     }
 
-    /// What people read for a symbol of [`Task::alphabet`].
+    /// What people read for a symbol.
     pub fn text(&self, symbol: Symbol) -> &str {
         self.symbols[symbol.index()].text()
     }
@@ -280,52 +305,37 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
         .flatten();
     let costs = faults.keep(Costs::read(&fields));
     let strategy = faults.keep(read_strategy(&fields)).flatten();
-    // Without symbols nothing else can be read.
-    let Some((symbols, alphabet)) = symbols::read(&fields, &mut faults) else {
+    // Without its symbols or its class nothing else of a task can be read.
+    let Some(subject) = Subject::read(&fields, files, &mut faults) else {
         return Err(faults.0);
     };
-    let told = fields.get("world");
-    let world = told.and_then(|value| situation::read_world(value, files, &mut faults));
-    let prior = situation::read_prior(&fields, &alphabet, files, &mut faults);
-    let mut built = None;
-    // Without its letters a map would be called wrong for no fault of its own.
-    let lettered = !faults.0.iter().any(|fault| fault.path.ends_with(".letter"));
-    if let Some((text, prior)) = &prior
-        && lettered
-        && world.is_some() == told.is_some()
-        && (world.is_some() || !text.is_empty())
-        && !situation::is_uploaded(world.as_ref())
-    {
-        let path = if text.is_empty() { "world" } else { "prior" };
-        let world = situation::build_world(world.as_ref(), &symbols, &alphabet);
-        let whole = world.and_then(|world| situation::build(Arc::new(world), prior.clone(), path));
-        built = faults.keep(whole);
-    }
-    let situation = built.as_ref();
-    let examples = examples::read(&fields, &alphabet, situation, &mut faults);
-    let practice = faults.keep(examples::read_practice(&fields, &alphabet, situation));
-    let target = match fields.get("target") {
-        Some(value) if is_file => {
-            let target = read_target(value, &alphabet, files);
-            faults.keep(target.and_then(|target| {
-                suits(&target, &examples, &alphabet, situation).map(|()| target)
-            }))
-        }
-        _ => None,
-    };
+    let universe = &subject.universe;
+    let examples = examples::read(&fields, universe, &mut faults);
+    let practice = faults.keep(examples::read_practice(&fields, universe));
+    let target =
+        match fields.get("target") {
+            Some(value) if is_file => {
+                let target = target::read(value, universe, files);
+                faults.keep(target.and_then(|target| {
+                    target::suits(&target, &examples, universe).map(|()| target)
+                }))
+            }
+            _ => None,
+        };
     if !faults.0.is_empty() {
         return Err(faults.0);
     }
     let task = Task {
         name: name.unwrap_or_else(|| "own".to_owned()),
         title: title.unwrap_or_else(|| "My own rule".to_owned()),
-        symbols,
+        symbols: subject.symbols,
+        class: subject.class,
         examples,
         max_states: max_states.unwrap_or(DEFAULT_STATES),
         guidelines: guidelines.unwrap_or_default(),
         empty: empty.unwrap_or_else(|| "nothing happens".to_owned()),
-        world,
-        prior: prior.map(|(text, _)| text).unwrap_or_default(),
+        world: subject.world,
+        prior: subject.prior,
         costs: costs.unwrap_or_default(),
         strategy,
         practice: practice.flatten(),
@@ -333,90 +343,9 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     Ok(Read {
         task,
         max_states,
-        situation: built,
+        universe: subject.universe,
         target,
     })
-}
-
-/// The whole language that a scripted teacher has in mind: a target by name, a rule
-/// or an automaton, or a list of these, of which all hold.
-fn read_target(value: &Value, alphabet: &Alphabet, files: Files<'_>) -> Result<Dfa, Malformed> {
-    let Some(list) = value.as_array() else {
-        return read_one_target(value, "target", alphabet, files);
-    };
-    let mut all: Option<Dfa> = None;
-    for (place, value) in list.iter().enumerate() {
-        let one = read_one_target(value, &format!("target[{place}]"), alphabet, files)?;
-        all = Some(match all {
-            None => one,
-            // Both are over the alphabet of the task.
-            Some(all) => all.and(&one).map_or(one, |both| both.minimise()),
-        });
-    }
-    all.ok_or_else(|| Malformed::new("target", "the list is empty: give at least one rule"))
-}
-
-fn read_one_target(
-    value: &Value,
-    path: &str,
-    alphabet: &Alphabet,
-    files: Files<'_>,
-) -> Result<Dfa, Malformed> {
-    if let Some(Ok(target)) = value.as_str().map(Target::named) {
-        return automaton::over(target.dfa().clone(), alphabet)
-            .map_err(|error| Malformed::new(path, error.to_string()));
-    }
-    situation::read_rule(value, path, alphabet, files).map(|(_, dfa)| dfa)
-}
-
-/// Checks that the target says of the examples what they say, and nothing that is
-/// known otherwise.
-fn suits(
-    target: &Dfa,
-    examples: &[Example],
-    alphabet: &Alphabet,
-    situation: Option<&Situation>,
-) -> Result<(), Malformed> {
-    let spell = |word: &Word| {
-        let names: Vec<&str> = alphabet.spell(word).collect();
-        format!("[{}]", names.join(", "))
-    };
-    for example in examples {
-        if let Ok(word) = alphabet.word(&example.word)
-            && target.accepts(&word) != example.label
-        {
-            let verb = if example.label { "rejects" } else { "accepts" };
-            return Err(Malformed::new(
-                "target",
-                format!(
-                    "the target {verb} the example {}: correct one of them",
-                    spell(&word)
-                ),
-            ));
-        }
-    }
-    let Some(Situation { world, prior }) = situation else {
-        return Ok(());
-    };
-    let wrong = prior.whole(target).xor(target);
-    let first = wrong.ok().and_then(|wrong| world.simplest(&wrong, 1).pop());
-    match first {
-        None => Ok(()),
-        Some(word) => {
-            let verb = if target.accepts(&word) {
-                "accepts"
-            } else {
-                "rejects"
-            };
-            Err(Malformed::new(
-                "target",
-                format!(
-                    "the target {verb} {}, and what is known beforehand (`prior`) says the opposite: correct one of them",
-                    spell(&word)
-                ),
-            ))
-        }
-    }
 }
 
 #[cfg(test)]

@@ -166,7 +166,7 @@ pub(super) enum Files<'a> {
 
 impl Files<'_> {
     /// The path of a file that is named at `path` in the task.
-    fn find(self, named: &str, path: &str) -> Result<PathBuf, Malformed> {
+    pub(super) fn find(self, named: &str, path: &str) -> Result<PathBuf, Malformed> {
         match self {
             Files::In(folder) => Ok(folder.join(named)),
             Files::None => Err(Malformed::new(

@@ -120,7 +120,7 @@ pub(super) fn read(
     if symbols.len() < list.len() {
         return None;
     }
-    let alphabet = faults.keep(check_alphabet(&symbols))?;
+    let alphabet = faults.keep(alphabet(&symbols))?;
     read_colours(fields, &mut symbols, faults);
     for (place, symbol) in symbols.iter().enumerate() {
         let same = |other: &SymbolText| other.letter.is_some() && other.letter == symbol.letter;
@@ -226,7 +226,8 @@ fn read_colours(fields: &Fields<'_>, symbols: &mut [SymbolText], faults: &mut Fa
     }
 }
 
-fn check_alphabet(symbols: &[SymbolText]) -> Result<Alphabet, Malformed> {
+/// The alphabet of these symbols' names.
+pub(super) fn alphabet(symbols: &[SymbolText]) -> Result<Alphabet, Malformed> {
     if symbols.len() > MAX_SYMBOLS {
         return Err(Malformed::new(
             "symbols",

@@ -2,6 +2,8 @@
 
 use serde_json::json;
 
+use automata::Word;
+
 use super::*;
 
 #[test]
@@ -17,7 +19,7 @@ fn a_task_survives_its_log() {
     let again: Task = serde_json::from_value(serde_json::to_value(&task).unwrap()).unwrap();
     assert_eq!(task, again);
     assert_eq!(task.text(Symbol::new(1)), "water");
-    assert_eq!(task.known(&task.alphabet()).len(), 2);
+    assert_eq!(task.known::<Word>(&task.universe().unwrap()).len(), 2);
 }
 
 #[test]
@@ -122,7 +124,7 @@ fn a_world_and_a_prior_survive_the_log() {
     assert_eq!(task.symbols[0].colour.as_ref().unwrap().hex(), "#ff0000");
     assert_eq!(task.costs.comparison, Some(f64::INFINITY));
     let situation = task.situation().unwrap().unwrap();
-    let alphabet = task.alphabet();
+    let alphabet = task.alphabet().unwrap();
     assert!(
         situation
             .world
@@ -274,7 +276,7 @@ fn the_template_is_a_task() {
     let file = TaskFile::from_toml(TEMPLATE, std::path::Path::new("")).unwrap();
     assert!(file.target.is_some());
     assert!(file.task.practice.is_some());
-    assert!(file.situation.is_some());
+    assert!(file.universe.situation().is_some());
 }
 
 /// All faults are told, in their order in the file.

@@ -7,6 +7,7 @@
 
 mod conflict;
 mod driver;
+mod drives;
 mod house;
 mod page;
 mod pictures;

@@ -86,7 +86,8 @@ async fn drawn(client: &Client, page: &Page, alphabet: &Alphabet) -> Vec<Word> {
 #[tokio::test]
 async fn the_robot_is_taught_from_drawn_walks() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tasks/robot-recharge.toml");
-    let situation = TaskFile::open(&file).unwrap().situation.unwrap();
+    let file = TaskFile::open(&file).unwrap();
+    let situation = file.universe.situation().unwrap();
     let target = Target::named("robot").unwrap();
     let alphabet = target.dfa().alphabet().clone();
     let open = situation.prior.open().clone();

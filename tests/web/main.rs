@@ -2,6 +2,7 @@
 #![cfg(feature = "server")]
 
 mod api;
+mod classes;
 mod conflicts;
 mod pages;
 #[cfg(unix)]

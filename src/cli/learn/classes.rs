@@ -4,68 +4,96 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use automata::format::json::Provenance;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::converse::converse;
-use super::teller::{Points, Rewards, Teller};
+use super::teller::{Points, Teller};
 use super::{Args, check_options, config, status, summary, teacher};
 use crate::cli::files;
-use crate::concept::{
-    ConceptClass, Failure, FiniteConcept, FiniteTable, LinearReward, LinearRewards, MonotoneClass,
-};
-use crate::evidence::{Budget, Fact};
+use crate::concept::{ConceptClass, FiniteConcept, FiniteTable, LinearReward, MOST_POINTS};
+use crate::evidence::Fact;
 use crate::learner::{Learner, Strategy};
 use crate::oracle::{ClassGoal, MonotoneTarget, ScriptedTeacher};
-use crate::task::Costs;
+use crate::task::{BehaviourText, Concept, Rewards, Saved, Task, TaskFile, Universe};
 
 /// The points per axis up to which rewards are looked for, where a file does not
 /// say.
 const FINEST: usize = 9;
-/// The most that a file may say, by the number of features less one.
-const MOST: [usize; 3] = [200, 40, 16];
 
 /// Runs the command for such a target; none if the target is none of these.
-pub(super) fn run(args: &Args) -> anyhow::Result<Option<ExitCode>> {
+pub(super) fn run(args: &Args, file: Option<&TaskFile>) -> anyhow::Result<Option<ExitCode>> {
+    if let Some(file) = file.filter(|file| file.task.class.is_some()) {
+        refuse_words(args)?;
+        check_options(args, strategy(args, Some(&file.task)))?;
+        return taught(args, file).map(Some);
+    }
     let name = args.target.as_str();
     let kinds = ["monotone:", "finite:", "linear:"];
     if kinds.iter().all(|kind| !name.starts_with(kind)) {
         return Ok(None);
     }
     refuse_words(args)?;
-    check_options(args, strategy(args))?;
+    check_options(args, strategy(args, None))?;
+    let goal = Goal {
+        args,
+        task: None,
+        format: "memrep-monotone",
+    };
     if let Some(target) = MonotoneTarget::named(name, args.seed)? {
-        let class = || target.class();
-        let parameter = target.parameter().clone();
-        return learn(args, "memrep-monotone", class, parameter, &Points).map(Some);
+        let concept = target.parameter().clone();
+        return goal
+            .learn(|| target.class(), Vec::new(), concept, &Points)
+            .map(Some);
     }
     if let Some(rest) = name.strip_prefix("finite:") {
         let (table, concept) = table(rest, args.seed)?;
-        let class = || table.class().clone();
-        return learn(args, "memrep-finite", class, concept, &table).map(Some);
+        let goal = Goal {
+            format: "memrep-finite",
+            ..goal
+        };
+        return goal
+            .learn(|| table.class().clone(), Vec::new(), concept, &table)
+            .map(Some);
     }
     let path = name.strip_prefix("linear:").unwrap_or(name);
-    let (rewards, finest, reward) = rewards(path)?;
-    let class = || MonotoneClass::new(rewards.family.clone(), finest);
-    let mut known = class();
-    for atom in rewards.family.behaviours() {
-        let accepted = rewards.family.accepts(&reward, atom)?;
-        known.add(None, Fact::Label { atom, accepted });
+    let (rewards, reward) = rewards(path)?;
+    let parameter = rewards.simplest_like(&reward);
+    let parameter = parameter.map_err(|message| anyhow!("{path}: {message}"))?;
+    let goal = Goal {
+        format: "memrep-linear",
+        ..goal
+    };
+    goal.learn(|| rewards.class(), Vec::new(), parameter, &rewards)
+        .map(Some)
+}
+
+/// Teaches the target of a task that learns no automaton.
+fn taught(args: &Args, file: &TaskFile) -> anyhow::Result<ExitCode> {
+    let TaskFile { task, universe, .. } = file;
+    let goal = |format| Goal {
+        args,
+        task: Some(task),
+        format,
+    };
+    match (universe, file.target.clone()) {
+        (Universe::Monotone(axes), Some(Concept::Parameter(most))) => {
+            goal("memrep-monotone").learn(|| axes.class(), task.known(universe), most, axes)
+        }
+        (Universe::Finite(table), Some(Concept::Named(concept))) => {
+            let class = || table.class().clone();
+            goal("memrep-finite").learn(class, task.known(universe), concept, table)
+        }
+        (Universe::Linear(rewards), Some(Concept::Parameter(parameter))) => goal("memrep-linear")
+            .learn(|| rewards.class(), task.known(universe), parameter, rewards),
+        _ => bail!(
+            "{} has no target for a scripted teacher: add `target`, what is to be learned",
+            args.target
+        ),
     }
-    // The simplest parameter that accepts the same.
-    let parameter = match known.sample(1, 0, &mut Budget::unlimited()) {
-        Ok(sample) => sample.concepts.into_iter().next(),
-        Err(Failure::Contradiction(_) | Failure::OverBudget { .. }) => None,
-    };
-    let Some(parameter) = parameter else {
-        bail!(
-            "{path}: no reward on a grid with up to {finest} points per axis accepts the same behaviours as this one: raise `finest`"
-        );
-    };
-    learn(args, "memrep-linear", class, parameter, &rewards).map(Some)
 }
 
 /// Refuses options that are about words.
@@ -88,50 +116,41 @@ fn refuse_words(args: &Args) -> anyhow::Result<()> {
     }
 }
 
-/// Teaches a concept of a class.
-fn learn<C, L>(
-    args: &Args,
-    format: &str,
-    class: impl Fn() -> C,
-    concept: C::Concept,
-    teller: &L,
-) -> anyhow::Result<ExitCode>
-where
-    C: ConceptClass,
-    L: Teller<Atom = C::Atom, Concept = C::Concept>,
-{
-    let mut learner = Learner::new(
-        class(),
-        config(args, strategy(args), Costs::default()),
-        Vec::new(),
-    );
-    let goal = ClassGoal::new(class(), concept, args.teacher, args.seed);
-    let mut teacher = ScriptedTeacher::of(goal, teacher(args));
-    let report = converse(args, &mut learner, &mut teacher, teller)?;
-    if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
-        save(path, format, args, teller.concept_line(learned))?;
-    }
-    let doubts = learner.doubts();
-    summary::tell(
-        args,
-        strategy(args),
-        &args.target,
-        teller,
-        &report,
-        doubts,
-        None,
-    )?;
-    Ok(status(&report))
+/// What is taught, and how it is written down.
+#[derive(Clone, Copy)]
+struct Goal<'a> {
+    args: &'a Args,
+    task: Option<&'a Task>,
+    format: &'a str,
 }
 
-/// A learned concept as a file.
-#[derive(Serialize)]
-struct Saved<'a, C> {
-    format: &'a str,
-    version: u32,
-    name: &'a str,
-    concept: C,
-    provenance: Provenance,
+impl Goal<'_> {
+    /// Teaches a concept of a class to a learner that knows these facts.
+    fn learn<C, L>(
+        &self,
+        class: impl Fn() -> C,
+        known: Vec<Fact<C::Atom>>,
+        concept: C::Concept,
+        teller: &L,
+    ) -> anyhow::Result<ExitCode>
+    where
+        C: ConceptClass,
+        L: Teller<Atom = C::Atom, Concept = C::Concept>,
+    {
+        let args = self.args;
+        let strategy = strategy(args, self.task);
+        let told = self.task.map(|task| task.costs).unwrap_or_default();
+        let mut learner = Learner::new(class(), config(args, strategy, told), known);
+        let goal = ClassGoal::new(class(), concept, args.teacher, args.seed);
+        let mut teacher = ScriptedTeacher::of(goal, teacher(args));
+        let report = converse(args, &mut learner, &mut teacher, teller)?;
+        if let (Some(path), Some(learned)) = (&args.save, &report.learned) {
+            save(path, self.format, args, teller.concept_line(learned))?;
+        }
+        let doubts = learner.doubts();
+        summary::tell(args, strategy, &args.target, teller, &report, doubts, None)?;
+        Ok(status(&report))
+    }
 }
 
 fn save(path: &Path, format: &str, args: &Args, concept: impl Serialize) -> anyhow::Result<()> {
@@ -157,9 +176,10 @@ fn save(path: &Path, format: &str, args: &Args, concept: impl Serialize) -> anyh
     files::write(path, &text).context("the learned concept was not saved")
 }
 
-/// The strategy that was asked for, or the usual one: no file tells another.
-fn strategy(args: &Args) -> Strategy {
-    args.strategy.unwrap_or(Strategy::Bayes)
+/// The strategy that was asked for, or the task's, or the usual one.
+fn strategy(args: &Args, task: Option<&Task>) -> Strategy {
+    let told = args.strategy.or(task.and_then(|task| task.strategy));
+    told.unwrap_or(Strategy::Bayes)
 }
 
 /// The table of a file, and the concept of it that is named after a `#` or drawn.
@@ -195,38 +215,31 @@ struct RewardFile {
     threshold: f64,
     #[serde(default)]
     finest: Option<usize>,
-    behaviours: Vec<Named>,
+    behaviours: Vec<BehaviourText>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Named {
-    name: String,
-    features: Vec<Vec<f64>>,
-}
-
-fn rewards(path: &str) -> anyhow::Result<(Rewards, usize, LinearReward)> {
+fn rewards(path: &str) -> anyhow::Result<(Rewards, LinearReward)> {
     let text = files::text(Path::new(path))?;
     let file: RewardFile = serde_json::from_str(&text).with_context(|| path.to_owned())?;
-    let (names, features): (Vec<String>, Vec<Vec<Vec<f64>>>) = (file.behaviours.into_iter())
-        .map(|behaviour| (behaviour.name, behaviour.features))
-        .unzip();
-    let family = LinearRewards::new(&features).with_context(|| path.to_owned())?;
     let reward = LinearReward {
         weights: file.weights,
         threshold: file.threshold,
     };
-    family.parameter(&reward).with_context(|| path.to_owned())?;
-    let Some(&most) = MOST.get(reward.weights.len() - 1) else {
+    let Some(&most) = MOST_POINTS
+        .get(reward.weights.len())
+        .filter(|_| !reward.weights.is_empty())
+    else {
         bail!(
             "{path}: there are {} features: give 1 to {}, which make families of up to four dimensions",
             reward.weights.len(),
-            MOST.len()
+            MOST_POINTS.len() - 1
         );
     };
     let finest = file.finest.unwrap_or(FINEST);
     if !(2..=most).contains(&finest) {
         bail!("{path}: `finest` is {finest}: give a number of points per axis from 2 to {most}");
     }
-    Ok((Rewards { family, names }, finest, reward))
+    let features = (1..=reward.weights.len()).map(|place| place.to_string());
+    let rewards = Rewards::new(features.collect(), file.behaviours, finest);
+    Ok((rewards.with_context(|| path.to_owned())?, reward))
 }

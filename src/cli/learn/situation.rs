@@ -59,7 +59,7 @@ pub(super) fn read(
 /// What the file tells, with the arguments that override a part of its grid.
 fn told(args: &Args, file: Option<&TaskFile>) -> anyhow::Result<Option<Situation>> {
     if args.grid.is_some() || (args.steps.is_none() && args.labelling.is_none()) {
-        return Ok(file.and_then(|file| file.situation.clone()));
+        return Ok(file.and_then(|file| file.universe.situation().cloned()));
     }
     let mut task = file.map(|file| file.task.clone());
     let world = task.as_mut().and_then(|task| task.world.as_mut());

@@ -4,7 +4,8 @@ use automata::{Alphabet, Dfa, Word};
 use serde::Serialize;
 
 use crate::cli::output::{self, Nouns, counted};
-use crate::concept::{Behaviour, FiniteAtom, FiniteConcept, FiniteTable, LinearRewards, Point};
+use crate::concept::{Behaviour, FiniteAtom, FiniteConcept, FiniteTable, Point};
+use crate::task::{Axes, Rewards};
 use crate::world::{Shown, World};
 
 /// Tells of the atoms and concepts of one class.
@@ -149,6 +150,51 @@ impl Teller for Points {
     }
 }
 
+/// A limit on every axis, for programs.
+#[derive(Serialize)]
+pub(super) struct LimitsLine<'a> {
+    #[serde(flatten)]
+    point: PointLine<'a>,
+    /// The parameter in the units of the axes.
+    limits: Vec<f64>,
+}
+
+/// Points in the units of the axes, and limits on them.
+impl Teller for Axes {
+    type Atom = Point;
+    type Concept = Point;
+    type AtomLine<'a> = Vec<f64>;
+    type ConceptLine<'a> = LimitsLine<'a>;
+    const NOUNS: Nouns = Points::NOUNS;
+
+    fn atom_line<'a>(&'a self, atom: &'a Point) -> Vec<f64> {
+        self.values(atom)
+    }
+
+    fn concept_line<'a>(&'a self, concept: &'a Point) -> LimitsLine<'a> {
+        LimitsLine {
+            point: Points.concept_line(concept),
+            limits: self.values(concept),
+        }
+    }
+
+    fn spelled(&self, atom: &Point) -> String {
+        self.spell(atom)
+    }
+
+    fn described(&self, concept: &Point) -> String {
+        format!("exactly {}", Axes::described(self, concept).join(" and "))
+    }
+
+    fn learned(&self, concept: &Point) -> String {
+        format!("as {}", Axes::described(self, concept).join(" and "))
+    }
+
+    fn size(&self, concept: &Point) -> usize {
+        concept.size()
+    }
+}
+
 /// The rows and columns of a table.
 impl Teller for FiniteTable {
     type Atom = FiniteAtom;
@@ -186,12 +232,6 @@ impl Teller for FiniteTable {
     }
 }
 
-/// Behaviours with names, and rewards that accept them.
-pub(super) struct Rewards {
-    pub(super) family: LinearRewards,
-    pub(super) names: Vec<String>,
-}
-
 /// A reward for programs.
 #[derive(Serialize)]
 pub(super) struct RewardLine {
@@ -209,11 +249,11 @@ impl Teller for Rewards {
     const NOUNS: Nouns = output::CONCEPTS;
 
     fn atom_line<'a>(&'a self, atom: &'a Behaviour) -> &'a str {
-        &self.names[atom.0 as usize]
+        self.name(*atom)
     }
 
     fn concept_line<'a>(&'a self, concept: &'a Point) -> RewardLine {
-        let reward = self.family.reward(concept);
+        let reward = self.reward(concept);
         RewardLine {
             size: concept.size(),
             weights: reward.weights,
@@ -222,11 +262,11 @@ impl Teller for Rewards {
     }
 
     fn spelled(&self, atom: &Behaviour) -> String {
-        format!("`{}`", self.names[atom.0 as usize])
+        format!("`{}`", self.name(*atom))
     }
 
     fn described(&self, concept: &Point) -> String {
-        let reward = self.family.reward(concept);
+        let reward = self.reward(concept);
         let weights: Vec<String> = (reward.weights.iter())
             .map(|weight| format!("{weight:.3}"))
             .collect();

@@ -36,6 +36,10 @@ pub use family::Family;
 pub use linear::{Behaviour, LinearError, LinearReward, LinearRewards};
 pub use point::{Place, Point};
 
+/// By dimensions less one: the most points per axis with which questions come
+/// within a fraction of a second.
+pub const MOST_POINTS: [usize; 4] = [1000, 200, 40, 16];
+
 /// So many parameters of one size are looked at one by one.
 const LISTED: u64 = 8192;
 /// As many simpler atoms are listed at most.

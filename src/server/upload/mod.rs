@@ -71,7 +71,7 @@ pub(crate) async fn create(
     let mut read: Option<(Task, Setup)> = None;
     let (_, spool) = take(request, &TEXTS, |form| {
         let (task, setup) = read_task(form, id)?;
-        let alphabet = task.alphabet();
+        let alphabet = task.alphabet().ok_or_else(no_words)?;
         read = Some((task, setup));
         Ok(alphabet)
     })
@@ -94,6 +94,11 @@ pub(crate) async fn create(
 
 fn created(session: SessionId, upload: UploadId) -> Value {
     json!({"id": session.to_string(), "upload": upload.to_string()})
+}
+
+fn no_words() -> Malformed {
+    let message = "recordings are of words: give `symbols`, or leave the recordings out";
+    Malformed::new("task.symbols", message)
 }
 
 /// What is wrong with the task stands under its key.
@@ -194,7 +199,7 @@ pub(crate) async fn own_rule(request: Request) -> Result<OwnRule, Request> {
             .as_ref()
             .map_err(|_| WebError::internal("no randomness"))?;
         let task = form.own_task_in(Some(*id))?;
-        let alphabet = task.alphabet();
+        let alphabet = task.alphabet().ok_or_else(no_words)?;
         read = Some((task, *id));
         Ok(alphabet)
     })

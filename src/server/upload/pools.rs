@@ -63,7 +63,9 @@ impl Pools {
         let unfit = |error: &dyn std::fmt::Display| {
             Malformed::new("world.upload", format!("{RECORDINGS}: {error}"))
         };
-        let mut reader = PoolReader::new(task.alphabet());
+        // Only a task of words has a world.
+        let alphabet = task.alphabet().ok_or_else(unknown)?;
+        let mut reader = PoolReader::new(alphabet);
         for place in 0..file.size.div_ceil(CHUNK as u64) {
             let chunk = store.chunk(&file, place).map_err(WebError::internal)?;
             reader.feed(&chunk).map_err(|error| unfit(&error))?;

@@ -1,0 +1,99 @@
+//! Standing answers, and how they could be mended.
+
+use super::behaviour::BehaviourView;
+use crate::evidence::Comparison;
+use crate::learner::{Question, Reply};
+use crate::session::{Atom, Session};
+
+/// A standing answer, and how it could be mended.
+pub(crate) struct PastView {
+    pub(crate) number: u32,
+    pub(crate) asked: &'static str,
+    pub(crate) first: Option<BehaviourView>,
+    pub(crate) second: Option<BehaviourView>,
+    pub(crate) said: String,
+    pub(crate) others: Vec<Choice>,
+}
+
+/// An answer that could be given instead.
+pub(crate) struct Choice {
+    pub(crate) value: &'static str,
+    pub(crate) text: &'static str,
+}
+
+const JUDGEMENTS: [(&str, &str, Reply<Atom>); 2] = [
+    ("accept", "acceptable", Reply::Accept),
+    ("reject", "not acceptable", Reply::Reject),
+];
+const COMPARISONS: [(&str, &str, Reply<Atom>); 4] = [
+    ("first", "A is better", Reply::Compared(Comparison::First)),
+    ("second", "B is better", Reply::Compared(Comparison::Second)),
+    (
+        "equal",
+        "equally good or bad",
+        Reply::Compared(Comparison::Equal),
+    ),
+    (
+        "incomparable",
+        "I can’t compare these",
+        Reply::Compared(Comparison::Incomparable),
+    ),
+];
+
+impl PastView {
+    /// The standing answer of this number.
+    pub(crate) fn of(number: u32, session: &Session) -> Option<Self> {
+        let standing = session.answer_to(number)?;
+        let reply = &standing.reply;
+        let (asked, first, second, choices): (_, _, _, &[_]) = match &session
+            .asked(number)?
+            .question
+        {
+            Question::Membership { atom } => (
+                "Is this acceptable?",
+                Some(BehaviourView::of(atom, session)),
+                None,
+                &JUDGEMENTS,
+            ),
+            Question::Comparison { first, second } => {
+                let (first, second) = BehaviourView::pair(first, second, session);
+                ("Which is closer?", Some(first), Some(second), &COMPARISONS)
+            }
+            Question::Equivalence { .. } => {
+                let word = match reply {
+                    Reply::Counterexample { atom, .. } => Some(BehaviourView::of(atom, session)),
+                    _ => None,
+                };
+                ("Is this the rule?", word, None, &[])
+            }
+        };
+        Some(Self {
+            number,
+            asked,
+            first,
+            second,
+            said: said(reply).to_owned(),
+            others: choices
+                .iter()
+                .filter(|(_, _, r)| r != reply)
+                .map(|&(value, text, _)| Choice { value, text })
+                .collect(),
+        })
+    }
+}
+
+/// What was said, for people.
+pub(crate) fn said(reply: &Reply<Atom>) -> &'static str {
+    match reply {
+        Reply::Skip => "nothing, you skipped it",
+        Reply::Correct => "this is right",
+        Reply::Counterexample { label: true, .. } => "no, this should be accepted",
+        Reply::Counterexample { label: false, .. } => "no, this should not be accepted",
+        Reply::Accept | Reply::Reject | Reply::Compared(_) => {
+            let mut choices = JUDGEMENTS.iter().chain(&COMPARISONS);
+            choices
+                .find(|(_, _, choice)| choice == reply)
+                .map_or("", |(_, text, _)| text)
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! A rule for people: an automaton drawn, limits with what was said about them, or
+//! what is acceptable by name.
+
+use automata::Dfa;
+use serde_json::json;
+
+use super::chart::Chart;
+use crate::session::{Atom, Concept, Session, Task, Universe};
+
+/// A rule for people.
+pub(crate) enum RuleView {
+    /// An automaton.
+    Automaton(AutomatonView),
+    /// Limits on what is measured.
+    Limits(LimitsView),
+    /// Behaviours by name.
+    Items(ItemsView),
+}
+
+/// Limits on what is measured.
+pub(crate) struct LimitsView {
+    /// A phrase an axis.
+    pub(crate) limits: Vec<String>,
+    /// What is accepted as an area, where there are two axes.
+    pub(crate) chart: Option<Chart>,
+}
+
+/// What a rule says of every behaviour.
+pub(crate) struct ItemsView {
+    /// What the rule is called.
+    pub(crate) name: String,
+    pub(crate) accepted: Vec<String>,
+    pub(crate) rejected: Vec<String>,
+}
+
+impl RuleView {
+    /// The rule of a session.
+    pub(crate) fn of(concept: &Concept, session: &Session) -> Self {
+        let universe = session.universe();
+        match (universe, concept) {
+            (_, Concept::Automaton(dfa)) => Self::Automaton(AutomatonView::of(dfa, session.task())),
+            (Universe::Monotone(axes), Concept::Parameter(most)) => Self::Limits(LimitsView {
+                limits: axes.described(most),
+                chart: Chart::of(axes, most, session),
+            }),
+            (Universe::Finite(table), Concept::Named(named)) => {
+                let name = format!("This rule is called “{}”.", table.concept(*named));
+                Self::items(name, concept, universe)
+            }
+            (Universe::Linear(rewards), Concept::Parameter(parameter)) => {
+                let reward = rewards.reward(parameter);
+                let weights: Vec<String> = (rewards.features().iter().zip(&reward.weights))
+                    .map(|(name, weight)| format!("{name} {weight:+.2}"))
+                    .collect();
+                let name = format!(
+                    "Acceptable is what adds up to more than {:.2}, each step counting {}.",
+                    reward.threshold,
+                    weights.join(", ")
+                );
+                Self::items(name, concept, universe)
+            }
+            (_, Concept::Parameter(_) | Concept::Named(_)) => {
+                Self::items(String::new(), concept, universe)
+            }
+        }
+    }
+
+    fn items(name: String, concept: &Concept, universe: &Universe) -> Self {
+        let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+        for (place, item) in universe.items().into_iter().enumerate() {
+            let atom = Atom::Item(place as u32);
+            let side = if universe.accepts(concept, &atom) {
+                &mut accepted
+            } else {
+                &mut rejected
+            };
+            side.push(item.to_owned());
+        }
+        Self::Items(ItemsView {
+            name,
+            accepted,
+            rejected,
+        })
+    }
+
+    /// The automaton's table as JSON, for the script that tries words.
+    pub(crate) fn machine(&self) -> Option<&str> {
+        match self {
+            Self::Automaton(view) => Some(&view.machine),
+            Self::Limits(_) | Self::Items(_) => None,
+        }
+    }
+
+    /// The number of states, where it has states.
+    pub(crate) fn states(&self) -> Option<usize> {
+        match self {
+            Self::Automaton(view) => Some(view.rows.len()),
+            Self::Limits(_) | Self::Items(_) => None,
+        }
+    }
+}
+
+/// An automaton for people.
+pub(crate) struct AutomatonView {
+    /// The drawing, where it is not too large.
+    pub(crate) svg: Option<String>,
+    pub(crate) symbols: Vec<String>,
+    pub(crate) rows: Vec<RowView>,
+    /// The table as JSON, for the script that tries words.
+    pub(crate) machine: String,
+}
+
+/// A state's line in the table.
+pub(crate) struct RowView {
+    pub(crate) state: usize,
+    pub(crate) start: bool,
+    pub(crate) accepting: bool,
+    pub(crate) next: Vec<usize>,
+}
+
+impl AutomatonView {
+    fn of(dfa: &Dfa, task: &Task) -> Self {
+        let symbols = || dfa.alphabet().symbols();
+        let rows: Vec<RowView> = dfa
+            .states()
+            .map(|state| RowView {
+                state: state.index(),
+                start: state == dfa.start(),
+                accepting: dfa.is_accepting(state),
+                next: symbols()
+                    .map(|symbol| dfa.next(state, symbol).index())
+                    .collect(),
+            })
+            .collect();
+        let machine = json!({
+            "symbols": dfa.alphabet().names().collect::<Vec<_>>(),
+            "start": dfa.start().index(),
+            "accepting": rows.iter().map(|row| row.accepting).collect::<Vec<_>>(),
+            "delta": rows.iter().map(|row| &row.next).collect::<Vec<_>>(),
+        });
+        Self {
+            svg: super::export::drawing(dfa, task),
+            symbols: symbols()
+                .map(|symbol| task.text(symbol).to_owned())
+                .collect(),
+            rows,
+            machine: machine.to_string(),
+        }
+    }
+}
