@@ -118,7 +118,8 @@ impl Reel {
                     _ => json!({"kind": "frames", "paths": ["0.png", "1.png", "2.png", "3.png"]}),
                 };
                 let line = json!({"id": format!("run-{number}"), "word": word, "media": media, "complete": number % 5 != 0});
-                reel.lines += &format!("{line}\n");
+                reel.lines.push_str(&line.to_string());
+                reel.lines.push('\n');
                 number += 1;
             }
         }
@@ -270,7 +271,7 @@ async fn recordings_are_sent_seen_and_taught_by() {
         let (_, seen) = teach(client, &reel).await;
         let kinds = ["animation", "cells", "player", "video"].map(str::to_owned);
         assert_eq!(seen, BTreeSet::from(kinds));
-        assert!(texts(client, ".rule-table, .drawing").await.len() > 0);
+        assert!(!texts(client, ".rule-table, .drawing").await.is_empty());
 
         // The player's slider and its button.
         client.goto(&house.at("/")).await.unwrap();

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use super::spool::Spooled;
 use super::{MEDIA, RECORDINGS};
 use crate::session::Malformed;
-use crate::world::pool::Pool;
+use crate::world::pool::{Media, Pool};
 
 /// The endings that are shown, with the type of the content, and as what it is
 /// served.
@@ -59,7 +59,7 @@ pub(super) fn all_are_here(
     let mut named = HashSet::new();
     for recording in pool.recordings() {
         let media = recording.media.iter();
-        for (field, path) in media.flat_map(|media| media.named()) {
+        for (field, path) in media.flat_map(Media::named) {
             if !sent.contains(path) {
                 let message = format!(
                     "line {}, `{field}`: `{path}` was not sent{}: send a file of exactly this path",

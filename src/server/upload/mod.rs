@@ -39,6 +39,18 @@ pub(crate) const UPLOAD_LIMIT: u64 = 64 << 20;
 /// The most bytes of what is around the files.
 const FRAME_LIMIT: u64 = 8 << 20;
 
+/// What comes to the API beside files.
+const TASK: Texts = Texts {
+    names: &["task"],
+    most: API_LIMIT,
+};
+
+/// What the start page sends beside files.
+const FORM: Texts = Texts {
+    names: &["title", "symbols", "examples"],
+    most: FORM_LIMIT,
+};
+
 /// A new upload with the task that it was sent for.
 pub(crate) struct Upload {
     pub(crate) id: UploadId,
@@ -63,13 +75,9 @@ pub(crate) async fn create(
         let body = Bytes::from_request(request, &()).await;
         return api::create(State(app), body).await;
     }
-    const TEXTS: Texts = Texts {
-        names: &["task"],
-        most: API_LIMIT,
-    };
     let id = UploadId::random().map_err(WebError::internal)?;
     let mut read: Option<(Task, Setup)> = None;
-    let (_, spool) = take(request, &TEXTS, |form| {
+    let (_, spool) = take(request, &TASK, |form| {
         let (task, setup) = read_task(form, id)?;
         let alphabet = task.alphabet().ok_or_else(no_words)?;
         read = Some((task, setup));
@@ -185,16 +193,12 @@ pub(crate) struct OwnRule {
 /// Reads the start page's form, with recordings or without; none if it is none of
 /// that kind, and the request comes back.
 pub(crate) async fn own_rule(request: Request) -> Result<OwnRule, Request> {
-    const TEXTS: Texts = Texts {
-        names: &["title", "symbols", "examples"],
-        most: FORM_LIMIT,
-    };
     if !is_multipart(&request) {
         return Err(request);
     }
     let id = UploadId::random().map_err(WebError::internal);
     let mut read = None;
-    let (form, spool) = take(request, &TEXTS, |form| {
+    let (form, spool) = take(request, &FORM, |form| {
         let id = id
             .as_ref()
             .map_err(|_| WebError::internal("no randomness"))?;
