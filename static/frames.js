@@ -1,4 +1,5 @@
-// Turns a strip of pictures into one picture at a time, with buttons and a slider.
+// Turns a strip of pictures into one picture at a time, with buttons and a slider; and
+// lets a picture that moves stand still, where motion is unwelcome.
 
 const PERIOD = 500;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -62,4 +63,28 @@ const player = (figure) => {
   if (!still.matches && figure.closest(".answers")) start();
 };
 
+const stills = (figure) => {
+  figure.removeAttribute("data-animation");
+  if (!still.matches) return;
+  const moving = figure.querySelector("img");
+  const stop = () => {
+    const first = document.createElement("canvas");
+    Object.assign(first, { width: moving.naturalWidth, height: moving.naturalHeight });
+    first.getContext("2d").drawImage(moving, 0, 0);
+    first.setAttribute("role", "img");
+    first.setAttribute("aria-label", moving.alt);
+    const play = button("Play");
+    play.addEventListener("click", () => {
+      const standing = first.isConnected;
+      (standing ? first : moving).replaceWith(standing ? moving : first);
+      play.textContent = standing ? "Stop" : "Play";
+    });
+    moving.replaceWith(first);
+    figure.append(play);
+  };
+  if (moving.complete && moving.naturalWidth > 0) stop();
+  else moving.addEventListener("load", stop, { once: true });
+};
+
 document.querySelectorAll("figure[data-frames]").forEach(player);
+document.querySelectorAll("figure[data-animation]").forEach(stills);

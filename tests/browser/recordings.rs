@@ -180,6 +180,8 @@ async fn seen(client: &Client) -> BTreeSet<String> {
             const loaded = images.every((image) => image.complete && image.naturalWidth > 0);
             if (card.querySelector(".player")) return loaded && images.length === 1 && "player";
             if (card.querySelector(".frames")) return loaded && images.length === 4 && "strip";
+            const canvas = card.querySelector(".recording canvas");
+            if (canvas) return canvas.width > 0 && "animation";
             if (images.length > 0) return loaded && "animation";
             if (video) return video.videoWidth > 0 && "video";
             return card.querySelector("svg.scene path.way") !== null && "cells";
@@ -272,6 +274,24 @@ async fn recordings_are_sent_seen_and_taught_by() {
         let kinds = ["animation", "cells", "player", "video"].map(str::to_owned);
         assert_eq!(seen, BTreeSet::from(kinds));
         assert!(!texts(client, ".rule-table, .drawing").await.is_empty());
+
+        // What moves stands still until it is let go; the browser asks for that.
+        client.goto(&house.at("/")).await.unwrap();
+        press(client, ".sessions a").await;
+        press(client, "#history-link").await;
+        let moving = "figure:has(canvas) button";
+        wait("a still", async || {
+            client.find(Locator::Css(moving)).await.ok()
+        })
+        .await;
+        const MARK: &str = r#"document.querySelector("figure:has(canvas)").id = "still";"#;
+        script(client, MARK).await;
+        press(client, "#still button").await;
+        const LOADED: &str = r##"
+            const image = document.querySelector("#still img");
+            return image.complete && image.naturalWidth > 0;
+        "##;
+        assert_eq!(script(client, LOADED).await, Value::Bool(true));
 
         // The player's slider and its button.
         client.goto(&house.at("/")).await.unwrap();

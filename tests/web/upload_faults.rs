@@ -162,7 +162,7 @@ async fn faulty_tasks_are_named() {
         ),
         (
             Parts::default()
-                .text("task", "symbols = [\"0\"\n")
+                .text("task", "symbols = [\"0\"]\nname = \n")
                 .recordings(&two()),
             "task",
             "line 2: this is not TOML",
@@ -214,7 +214,7 @@ async fn faulty_tasks_are_named() {
             )
             .recordings(&two()),
             "task.prior",
-            "leaves nothing",
+            "nothing to learn",
         ),
         (
             with(
@@ -223,7 +223,7 @@ async fn faulty_tasks_are_named() {
             )
             .recordings(&two()),
             "task.prior",
-            "leaves nothing",
+            "nothing to learn",
         ),
         (plain().text("colour", "red"), "colour", "no part `colour`"),
     ])
