@@ -242,6 +242,14 @@ async fn teach(client: &Client, reel: &Reel) -> (Page, BTreeSet<String>) {
     panic!("no rule after {MANY} questions: {page:?}");
 }
 
+/// The first that stands still gets a name.
+const MARK: &str = r#"document.querySelector("figure:has(canvas)").id = "still";"#;
+/// Whether it moves now.
+const LOADED: &str = r##"
+    const image = document.querySelector("#still img");
+    return image.complete && image.naturalWidth > 0;
+"##;
+
 /// A fault is told at its field, and what was chosen stays chosen; then recordings are
 /// played on the cards.
 #[tokio::test]
@@ -284,13 +292,8 @@ async fn recordings_are_sent_seen_and_taught_by() {
             client.find(Locator::Css(moving)).await.ok()
         })
         .await;
-        const MARK: &str = r#"document.querySelector("figure:has(canvas)").id = "still";"#;
         script(client, MARK).await;
         press(client, "#still button").await;
-        const LOADED: &str = r##"
-            const image = document.querySelector("#still img");
-            return image.complete && image.naturalWidth > 0;
-        "##;
         assert_eq!(script(client, LOADED).await, Value::Bool(true));
 
         // The player's slider and its button.

@@ -114,7 +114,7 @@ impl Media {
 
 /// The least of the cells' rows (side 0) or columns (side 1), and how many there are
 /// from it to the greatest.
-pub(crate) fn extent(cells: &[[u16; 2]], side: usize) -> (u16, u32) {
+pub fn extent(cells: &[[u16; 2]], side: usize) -> (u16, u32) {
     let places = || cells.iter().map(|cell| cell[side]);
     let (least, most) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
     (least, u32::from(most - least) + 1)

@@ -11,8 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::index::Index;
 use super::machine::Machine;
-pub(crate) use media::extent;
-pub use media::{Media, MediaError};
+pub use media::{Media, MediaError, extent};
 pub use reader::{PoolError, PoolReader};
 
 /// The most recordings of a pool.
