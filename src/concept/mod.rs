@@ -133,6 +133,13 @@ pub trait ConceptClass {
         (0..count).filter_map(draw).collect()
     }
 
+    /// The simplest atom, which cannot be shown, that would decide what nothing that
+    /// can be shown does about this hypothesis; none where all is decided.
+    fn beyond(&self, hypothesis: &Self::Concept) -> Option<Self::Atom> {
+        let _ = hypothesis;
+        None
+    }
+
     /// The distribution of [`Self::draw`], as a phrase that can stand in
     /// brackets.
     fn drawn_from(&self, hypothesis: &Self::Concept) -> String {

@@ -16,6 +16,7 @@ use super::AppState;
 use super::error::{ApiError, WebError};
 use super::export::{self, Format};
 use super::forms;
+use super::upload::under_task;
 use crate::learner::Question;
 use crate::session::{
     Atom, Concept, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session,
@@ -27,10 +28,10 @@ use crate::world::Shown;
 type Answer = Result<Json<Value>, ApiError>;
 type Body = Result<Bytes, BytesRejection>;
 
-/// All routes, relative to `/api/v1`.
+/// All routes but that of uploads, relative to `/api/v1`.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
-        .route("/sessions", get(list).post(create))
+        .route("/sessions", get(list))
         .route("/sessions/{id}", get(state))
         .route("/sessions/{id}/question", get(question))
         .route("/sessions/{id}/answers", post(answer))
@@ -41,8 +42,6 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/automaton", get(automaton))
         .route("/sessions/{id}/concept", get(concept))
         .route("/sessions/{id}/log", get(log))
-        .fallback(async || ApiError(WebError::NoPage))
-        .method_not_allowed_fallback(async || ApiError(WebError::NoMethod))
 }
 
 fn read_body(body: Body) -> Result<Value, WebError> {
@@ -60,7 +59,7 @@ pub(crate) fn session_id(text: &str) -> Result<SessionId, WebError> {
     text.parse().map_err(|_| WebError::NoSession)
 }
 
-async fn create(State(app): State<AppState>, body: Body) -> Result<Response, ApiError> {
+pub(crate) async fn create(State(app): State<AppState>, body: Body) -> Result<Response, ApiError> {
     let body = read_body(body)?;
     let fields = Fields::of(&body, "")?;
     let mut known = vec!["task"];
@@ -84,7 +83,8 @@ async fn create(State(app): State<AppState>, body: Body) -> Result<Response, Api
         }
     };
     let setup = Setup::of(&task).with(&fields)?;
-    let id = app.teaching.create(task, setup).await?;
+    let id = app.teaching.create(task, setup).await;
+    let id = id.map_err(under_task)?;
     Ok((StatusCode::CREATED, Json(json!({"id": id.to_string()}))).into_response())
 }
 
@@ -164,6 +164,9 @@ fn describe(session: &Session, position: &Position) -> Value {
         Position::Done(hypothesis) => {
             let mut value = json!({"kind": "done"});
             show_rule(&mut value, session, hypothesis);
+            if let Some(atom) = session.beyond() {
+                value["beyond"] = session.universe().text(&atom).bare();
+            }
             value
         }
     }

@@ -12,7 +12,7 @@ struct Asset {
     bytes: &'static [u8],
 }
 
-const ASSETS: [Asset; 3] = [
+const ASSETS: [Asset; 5] = [
     Asset {
         name: "app.css",
         kind: "text/css; charset=utf-8",
@@ -22,6 +22,16 @@ const ASSETS: [Asset; 3] = [
         name: "app.js",
         kind: "text/javascript; charset=utf-8",
         bytes: include_bytes!("../../static/app.js"),
+    },
+    Asset {
+        name: "frames.js",
+        kind: "text/javascript; charset=utf-8",
+        bytes: include_bytes!("../../static/frames.js"),
+    },
+    Asset {
+        name: "upload.js",
+        kind: "text/javascript; charset=utf-8",
+        bytes: include_bytes!("../../static/upload.js"),
     },
     Asset {
         name: "icon.svg",

@@ -4,6 +4,7 @@
 use automata::Word;
 
 use super::drive::Drive;
+use super::recording::RecordingView;
 use super::scene::{Look, Scene};
 use crate::concept::{Behaviour, Point};
 use crate::session::{Atom, Session, Task, Universe};
@@ -43,6 +44,7 @@ impl Chip {
 /// What there is to see of a behaviour, and what it is.
 pub(crate) struct BehaviourView {
     pub(crate) scene: Option<Scene>,
+    pub(crate) recording: Option<RecordingView>,
     pub(crate) drive: Option<Drive>,
     pub(crate) content: Content,
 }
@@ -156,6 +158,7 @@ impl BehaviourView {
     fn named(name: String, features: Vec<FeatureView>) -> Self {
         Self {
             scene: None,
+            recording: None,
             drive: None,
             content: Content::Item { name, features },
         }
@@ -173,6 +176,7 @@ impl BehaviourView {
         };
         Self {
             scene: None,
+            recording: None,
             drive: (axes.picture() == Some(Picture::Passing)).then(|| Drive::of(axes, point)),
             content: Content::Values(numbered.map(view).collect()),
         }
@@ -213,6 +217,7 @@ impl BehaviourView {
         let names: Vec<&str> = chips.iter().map(|chip| chip.name.as_str()).collect();
         Self {
             scene,
+            recording: RecordingView::shown(word, session),
             drive: None,
             content: Content::Word {
                 data: names.join(" "),

@@ -6,6 +6,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
+use super::upload::{RECORDINGS, UPLOAD_LIMIT};
 use super::views;
 use crate::session::{Corrupt, Malformed, Refusal};
 
@@ -27,6 +28,8 @@ pub(crate) enum WebError {
     Unreadable(String),
     /// The request's body is too large.
     TooLarge,
+    /// The files that came are too large.
+    UploadTooLarge,
     /// The request came from another site.
     Foreign,
     /// No automaton is on show at the moment.
@@ -73,7 +76,7 @@ impl WebError {
             | Self::NotAnAutomaton
             | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
             Self::Unreadable(_) => StatusCode::BAD_REQUEST,
-            Self::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             Self::Foreign => StatusCode::FORBIDDEN,
             Self::Slow => StatusCode::SERVICE_UNAVAILABLE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
@@ -101,7 +104,7 @@ impl WebError {
             },
             Self::Malformed(_) => "malformed",
             Self::Unreadable(_) => "unreadable_body",
-            Self::TooLarge => "body_too_large",
+            Self::TooLarge | Self::UploadTooLarge => "body_too_large",
             Self::Foreign => "cross_site",
             Self::NoAutomaton => "no_automaton",
             Self::NotAnAutomaton => "not_an_automaton",
@@ -126,6 +129,7 @@ impl WebError {
                 Refusal::BadBound { .. } => Some("max_states"),
                 Refusal::NothingToUndo | Refusal::NoBound => None,
             },
+            Self::UploadTooLarge => Some(RECORDINGS),
             _ => None,
         }
     }
@@ -142,6 +146,10 @@ impl WebError {
             Self::Malformed(malformed) => sentence(&malformed.message),
             Self::Unreadable(message) | Self::TooLargeToShow(message) => sentence(message),
             Self::TooLarge => "The request is too large: send less at once.".to_owned(),
+            Self::UploadTooLarge => format!(
+                "The files have more than {} MiB in all: leave recordings out, or make their pictures and films smaller.",
+                UPLOAD_LIMIT >> 20
+            ),
             Self::Foreign => {
                 "The request came from another site, so nothing was done: use this site's own pages."
                     .to_owned()

@@ -7,6 +7,7 @@ use super::error::WebError;
 use crate::evidence::Comparison;
 use crate::learner::Reply;
 use crate::session::{Atom, Fields, MAX_WORD, Malformed, Task, Universe};
+use crate::store::UploadId;
 
 /// The answers that the API knows, for people.
 const ANSWERS: &str = "`accept`, `reject`, `first`, `second`, `equal`, `incomparable`, `correct`, `counterexample` or `skip`";
@@ -165,8 +166,8 @@ impl Form {
         Ok(Reply::Counterexample { atom, label })
     }
 
-    /// The task of the "my own" form.
-    pub(crate) fn own_task(&self) -> Result<Task, Malformed> {
+    /// The task of the "my own" form; its world is the upload, if there is one.
+    pub(crate) fn own_task_in(&self, upload: Option<UploadId>) -> Result<Task, Malformed> {
         let names: Vec<&str> = self
             .text("symbols")
             .split(|c: char| c.is_whitespace() || c == ',' || c == ';')
@@ -209,6 +210,9 @@ impl Form {
             examples.push(json!({"word": names, "label": label}));
         }
         task["examples"] = Value::Array(examples);
+        if let Some(upload) = upload {
+            task["world"] = json!({"kind": "pool", "upload": upload.to_string()});
+        }
         Task::from_json(&task)
     }
 }
@@ -339,7 +343,7 @@ mod tests {
             ("examples", "+ water dryer\r\n\r\n- water\n+\n"),
             ("title", " Tea "),
         ])
-        .own_task()
+        .own_task_in(None)
         .unwrap();
         assert_eq!(task.title, "Tea");
         assert_eq!(task.symbols.len(), 3);
@@ -364,7 +368,7 @@ mod tests {
                 "other label",
             ),
         ] {
-            let error = fields.own_task().unwrap_err();
+            let error = fields.own_task_in(None).unwrap_err();
             assert_eq!(error.path, path);
             assert!(error.message.contains(part), "{error}");
         }

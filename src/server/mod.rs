@@ -13,13 +13,16 @@ mod error;
 mod export;
 mod forms;
 mod guard;
+mod media;
 mod pages;
 mod past;
 mod practice;
+mod recording;
 mod rule;
 mod scene;
 mod start;
 mod teaching;
+mod upload;
 mod views;
 
 use std::sync::Arc;
@@ -31,7 +34,7 @@ use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
 use axum::middleware::from_fn;
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
 use tokio::net::TcpListener;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::csrf::{CsrfLayer, ProtectionError};
@@ -49,6 +52,8 @@ const FORM_LIMIT: usize = 64 * 1024;
 const API_LIMIT: usize = 2 * 1024 * 1024;
 /// How long a body may take to arrive.
 const BODY_DEADLINE: Duration = Duration::from_secs(30);
+/// How long an upload may take to arrive: 64 MiB over a slow line.
+const UPLOAD_DEADLINE: Duration = Duration::from_secs(15 * 60);
 /// How long requests in progress may take to finish once the server stops.
 const FAREWELL: Duration = Duration::from_secs(3);
 
@@ -71,13 +76,23 @@ impl AppState {
 
 /// The whole site.
 pub fn app(state: AppState) -> Router {
+    let in_time = RequestBodyDeadlineLayer::new(BODY_DEADLINE);
+    let uploads_in_time = RequestBodyDeadlineLayer::new(UPLOAD_DEADLINE);
+    let new_session = Router::new().route("/sessions", post(upload::create));
     let api = api::routes()
+        .layer(in_time.clone())
+        .merge(new_session.layer(uploads_in_time.clone()))
+        .fallback(async || ApiError(WebError::NoPage))
+        .method_not_allowed_fallback(async || ApiError(WebError::NoMethod))
         .layer(CatchPanicLayer::custom(|panic| {
             ApiError(panicked(&panic)).into_response()
         }))
         .layer(DefaultBodyLimit::max(API_LIMIT));
+    let new_session = Router::new().route("/sessions", post(start::begin));
     let pages = pages::routes()
         .route("/static/{name}", get(assets::get))
+        .layer(in_time)
+        .merge(new_session.layer(uploads_in_time))
         .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))
         .method_not_allowed_fallback(async || PageError(WebError::NoMethod))
         .layer(CatchPanicLayer::custom(|panic| {
@@ -92,7 +107,6 @@ pub fn app(state: AppState) -> Router {
         .nest("/api/v1", api)
         .merge(pages)
         .with_state(state)
-        .layer(RequestBodyDeadlineLayer::new(BODY_DEADLINE))
         .layer(same_site)
         .layer(from_fn(guard::host))
         .layer(from_fn(guard::headers))

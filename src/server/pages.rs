@@ -16,11 +16,12 @@ use super::forms::{Faults, Form};
 use super::past::PastView;
 use super::rule::RuleView;
 use super::views::{Bar, Shell, render};
-use super::{export, practice, start};
+use super::{export, media, practice, start};
 use crate::learner::{Counts, Question, Reply};
 use crate::session::{Concept, Decision, MAX_STATES, Position, Session, Universe};
 use crate::store::SessionId;
 use crate::task::Axis;
+use crate::world::World;
 
 /// Where a counterexample is typed, the behaviour first.
 const ATOM_FIELDS: [&str; 4] = ["word", "point", "item", "label"];
@@ -28,11 +29,10 @@ const ATOM_FIELDS: [&str; 4] = ["word", "point", "item", "label"];
 /// A form's body, or why it is none.
 pub(crate) type Fields = Result<FormBody<Vec<(String, String)>>, FormRejection>;
 
-/// All routes of the pages.
+/// All routes of the pages but that of uploads.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
         .route("/", get(start::show))
-        .route("/sessions", post(start::begin))
         .route("/sessions/{id}", get(show))
         .route("/sessions/{id}/answers", post(answer))
         .route("/sessions/{id}/retractions", post(retract))
@@ -44,6 +44,7 @@ pub(crate) fn routes() -> Router<AppState> {
             get(practice::show).post(practice::answer),
         )
         .route("/sessions/{id}/automaton.svg", get(drawing))
+        .route("/sessions/{id}/media/{*path}", get(media::show))
 }
 
 pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {
@@ -168,6 +169,9 @@ struct DonePage {
     counts: Counts,
     files: Vec<Download>,
     agreed: Option<u32>,
+    /// What nothing that can be shown decides; and whether that is recordings.
+    beyond: Option<BehaviourView>,
+    recorded: bool,
 }
 
 /// What a person had typed when something was wrong with it.
@@ -256,6 +260,8 @@ fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
             rule: RuleView::of(&session.whole(hypothesis), session),
             counts: session.counts(),
             files: downloads(id, session.universe()),
+            beyond: (session.beyond()).map(|atom| BehaviourView::of(&atom, session)),
+            recorded: matches!(session.world(), Some(World::Pool(_))),
             agreed: session
                 .standing()
                 .iter()

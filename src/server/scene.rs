@@ -1,4 +1,5 @@
-//! A walk through a grid as it is drawn: tiles with their letters, and the way
+//! A walk through a grid as it is drawn, or recorded cells: tiles with their
+//! letters, and the way
 //! from the start to the token, numbered where it touches a tile.
 
 use std::collections::BTreeMap;
@@ -7,6 +8,7 @@ use std::fmt::Write as _;
 use automata::Symbol;
 
 use crate::world::grid::{Cell, Grid, Move, Step, Tile};
+use crate::world::pool::extent;
 
 /// The side of a cell. Lengths are in units of the drawing.
 const SIDE: i32 = 32;
@@ -76,44 +78,100 @@ pub(crate) struct Place {
 impl Scene {
     /// The walk in its grid, with these looks by symbol.
     pub(crate) fn of(grid: &Grid, from: Cell, steps: &[Step], looks: &[Look]) -> Self {
+        let strides = steps.iter().map(|step| Stride {
+            to: step.to,
+            angle: angle(step.by),
+            touches: step.gives.is_some(),
+        });
+        Self {
+            tiles: tiles(grid, looks),
+            ..Self::way(grid.rows(), grid.columns(), from, strides)
+        }
+    }
+
+    /// Recorded cells, each as row and column, in the smallest grid that has them.
+    pub(crate) fn of_cells(cells: &[[u16; 2]]) -> Self {
+        let [(top, rows), (left, columns)] = [0, 1].map(|side| extent(cells, side));
+        let mut places = cells.iter().map(|[row, column]| Cell {
+            row: usize::from(row - top),
+            column: usize::from(column - left),
+        });
+        let from = places.next().unwrap_or(Cell { row: 0, column: 0 });
+        let mut before = from;
+        let strides = places.map(|to| {
+            let angle = bearing(before, to);
+            before = to;
+            Stride {
+                to,
+                angle,
+                touches: false,
+            }
+        });
+        Self::way(rows as usize, columns as usize, from, strides)
+    }
+
+    /// A way through a blank grid.
+    fn way(
+        rows: usize,
+        columns: usize,
+        from: Cell,
+        strides: impl ExactSizeIterator<Item = Stride>,
+    ) -> Self {
         let mut passes = Passes::default();
         let start = passes.point(from);
         let mut way = format!("M{} {}", start.x, start.y);
         let mut scene = Self {
-            width: units(grid.columns()),
-            height: units(grid.rows()),
-            lines: lines(grid),
-            tiles: tiles(grid, looks),
+            width: units(columns),
+            height: units(rows),
+            lines: lines(rows, columns),
+            tiles: Vec::new(),
             way: String::new(),
             headings: Vec::new(),
             touches: Vec::new(),
             start,
             token: start,
-            steps: steps.len(),
+            steps: strides.len(),
         };
         let mut before = None;
-        for step in steps {
-            let mut to = passes.point(step.to);
-            to.angle = angle(step.by).unwrap_or(scene.token.angle);
+        for stride in strides {
+            let mut to = passes.point(stride.to);
+            to.angle = stride.angle.unwrap_or(scene.token.angle);
             // Writing to a string never fails.
             let _ = write!(way, " L{} {}", to.x, to.y);
-            if step.by != Move::Stay && before != Some(step.by) {
+            if stride.angle.is_some() && before != Some(stride.angle) {
                 scene.headings.push(Place {
                     x: i32::midpoint(scene.token.x, to.x),
                     y: i32::midpoint(scene.token.y, to.y),
                     angle: to.angle,
                 });
             }
-            if step.gives.is_some() {
+            if stride.touches {
                 let number = scene.touches.len() + 1;
                 scene.touches.push(TouchView { number, at: to });
             }
             scene.token = to;
-            before = Some(step.by);
+            before = Some(stride.angle);
         }
         scene.way = way;
         scene
     }
+}
+
+/// A step as it is drawn.
+struct Stride {
+    to: Cell,
+    /// Which way, clockwise from the right; none where it stays.
+    angle: Option<i32>,
+    /// Whether there is a tile.
+    touches: bool,
+}
+
+/// The angle from one cell to another, which need not be its neighbour.
+fn bearing(from: Cell, to: Cell) -> Option<i32> {
+    let side = |from: usize, to: usize| units(to) - units(from);
+    let (x, y) = (side(from.column, to.column), side(from.row, to.row));
+    let angle = f64::from(y).atan2(f64::from(x)).to_degrees().round() as i32;
+    (from != to).then(|| angle.rem_euclid(360))
 }
 
 /// How often each cell was passed.
@@ -149,13 +207,13 @@ fn angle(by: Move) -> Option<i32> {
     }
 }
 
-fn lines(grid: &Grid) -> String {
+fn lines(rows: usize, columns: usize) -> String {
     let mut lines = String::new();
-    let (width, height) = (units(grid.columns()), units(grid.rows()));
-    for column in 0..=grid.columns() {
+    let (width, height) = (units(columns), units(rows));
+    for column in 0..=columns {
         let _ = write!(lines, "M{} 0V{height}", units(column));
     }
-    for row in 0..=grid.rows() {
+    for row in 0..=rows {
         let _ = write!(lines, "M0 {}H{width}", units(row));
     }
     lines

@@ -1,17 +1,18 @@
 //! The start page: ready tasks, one's own, and sessions to go on with.
 
 use askama::Template;
-use axum::extract::State;
+use axum::extract::{Form as FormBody, FromRequest, Request, State};
 use axum::response::{IntoResponse, Redirect, Response};
 
 use super::AppState;
 use super::behaviour::{Chip, chips};
 use super::error::{PageError, WebError};
 use super::forms::Faults;
-use super::pages::{Fields, read_form};
+use super::pages::read_form;
+use super::upload::{self, OwnRule};
 use super::views::{Shell, render};
-use crate::session::{Setup, Task, offered, ready};
-use crate::store::Listed;
+use crate::session::{Malformed, Setup, Task, offered, ready};
+use crate::store::{Listed, SessionId};
 
 struct TaskCard {
     name: String,
@@ -33,6 +34,8 @@ struct OwnForm {
     title: String,
     symbols: String,
     examples: String,
+    /// Whether files came, which a page cannot keep.
+    sent: bool,
 }
 
 #[derive(Template)]
@@ -95,30 +98,80 @@ pub(crate) async fn show(State(app): State<AppState>) -> Result<Response, PageEr
     Ok(start_page(&app, OwnForm::default(), Faults::default()).await?)
 }
 
+/// `POST /sessions`: a ready task, or one's own with recordings or without.
 pub(crate) async fn begin(
     State(app): State<AppState>,
-    fields: Fields,
+    request: Request,
 ) -> Result<Response, PageError> {
-    let form = read_form(fields)?;
-    let task = if form.has("task") {
-        ready(form.text("task")).map_err(WebError::from)?
-    } else {
-        match form.own_task() {
-            Ok(task) => task,
-            Err(fault) => {
-                let own = OwnForm {
-                    title: form.text("title").to_owned(),
-                    symbols: form.text("symbols").to_owned(),
-                    examples: form.text("examples").to_owned(),
-                };
-                let error = WebError::from(fault);
-                let faults = Faults::of(&error, &["title", "symbols", "examples"]);
-                let page = start_page(&app, own, faults).await?;
-                return Ok((error.status(), page).into_response());
+    let own = match upload::own_rule(request).await {
+        Ok(own) => own,
+        Err(request) => {
+            let form = read_form(FormBody::from_request(request, &()).await)?;
+            if form.has("task") {
+                let task = ready(form.text("task")).map_err(WebError::from)?;
+                let setup = Setup::of(&task);
+                let id = app.teaching.create(task, setup).await?;
+                return Ok(to_session(id));
+            }
+            let read = form.own_task_in(None).map(|task| (task, None));
+            OwnRule {
+                sent: false,
+                read: read.map_err(WebError::from),
+                form,
             }
         }
     };
-    let setup = Setup::of(&task);
-    let id = app.teaching.create(task, setup).await?;
-    Ok(Redirect::to(&format!("/sessions/{id}")).into_response())
+    let begun = match own.read {
+        Ok((task, upload)) => {
+            let setup = Setup::of(&task);
+            match upload {
+                Some(upload) => app.teaching.create_with(task, setup, upload).await,
+                None => app.teaching.create(task, setup).await,
+            }
+        }
+        Err(error) => Err(error),
+    };
+    match begun {
+        Ok(id) => Ok(to_session(id)),
+        Err(
+            error @ (WebError::Malformed(_) | WebError::UploadTooLarge | WebError::Unreadable(_)),
+        ) => {
+            let error = numbered(error);
+            let typed = OwnForm {
+                title: own.form.text("title").to_owned(),
+                symbols: own.form.text("symbols").to_owned(),
+                examples: own.form.text("examples").to_owned(),
+                sent: own.sent,
+            };
+            let faults = Faults::of(&error, &FIELDS);
+            let page = start_page(&app, typed, faults).await?;
+            Ok((error.status(), page).into_response())
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The fields of one's own rule; what is about no field is said at the first.
+const FIELDS: [&str; 5] = ["recordings", "title", "symbols", "examples", "media"];
+
+/// The same, saying which example is meant.
+fn numbered(error: WebError) -> WebError {
+    let place = |path: &str| -> Option<usize> {
+        let place = path.strip_prefix("examples[")?.strip_suffix(']')?;
+        place.parse().ok()
+    };
+    match error {
+        WebError::Malformed(fault) => match place(&fault.path) {
+            Some(at) => {
+                let message = format!("example {}: {}", at + 1, fault.message);
+                Malformed::new(fault.path, message).into()
+            }
+            None => fault.into(),
+        },
+        other => other,
+    }
+}
+
+fn to_session(id: SessionId) -> Response {
+    Redirect::to(&format!("/sessions/{id}")).into_response()
 }

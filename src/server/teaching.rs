@@ -8,8 +8,9 @@ use std::time::Duration;
 use tokio::sync::{Mutex as AsyncMutex, Semaphore};
 
 use super::error::WebError;
+use super::upload::{Pools, Upload};
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
-use crate::store::{Entry, Listed, SessionId, Store, StoreError};
+use crate::store::{Entry, Listed, SessionId, Store, StoreError, StoredFile};
 
 /// How many folded sessions are kept in memory; the others wait in the store.
 const KEPT: usize = 200;
@@ -22,9 +23,15 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// work has failed, so that the store's word counts again.
 type Slot = AsyncMutex<Option<Session>>;
 
+/// Where sessions are read from: the store, and what is in memory of its uploads.
+struct Archive {
+    store: Arc<dyn Store>,
+    pools: Pools,
+}
+
 /// All sessions of a store, and the pool on which they think.
 pub(crate) struct Teaching {
-    store: Arc<dyn Store>,
+    archive: Arc<Archive>,
     loaded: Mutex<Loaded>,
     permits: Arc<Semaphore>,
 }
@@ -38,28 +45,94 @@ struct Loaded {
 impl Teaching {
     /// Sessions of `store`, of which at most `width` think at the same time.
     pub(crate) fn new(store: Arc<dyn Store>, width: usize) -> Self {
+        let pools = Pools::default();
         Self {
-            store,
+            archive: Arc::new(Archive { store, pools }),
             loaded: Mutex::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
         }
     }
 
-    /// Begins a session and puts its first question.
+    /// Begins a session and puts its first question. Where the task's world is an
+    /// upload, it is there already.
     pub(crate) async fn create(&self, task: Task, setup: Setup) -> Result<SessionId, WebError> {
         let id = SessionId::random().map_err(WebError::internal)?;
-        let store = Arc::clone(&self.store);
-        let first = Session::created(task, setup);
+        let archive = Arc::clone(&self.archive);
         self.on_pool(move || {
+            let Archive { store, pools } = &*archive;
+            let world = pools.world(&**store, &task)?;
+            let upload = match (world, task.upload()) {
+                (Some(world), Some(named)) => {
+                    task.check_in(world)?;
+                    Some(named.parse().map_err(WebError::internal)?)
+                }
+                _ => None,
+            };
+            let first = Session::created(task, setup);
             let body = serde_json::to_string(&first).map_err(WebError::internal)?;
-            store.append(&id, 0, &body).map_err(WebError::internal)
+            match upload {
+                Some(upload) => store.begin(&id, &body, &upload, None),
+                None => store.append(&id, 0, &body),
+            }
+            .map_err(WebError::internal)
         })
         .await?;
+        self.wake(id).await
+    }
+
+    /// Begins a session with an upload of its own: both are there afterwards, or
+    /// neither.
+    pub(crate) async fn create_with(
+        &self,
+        task: Task,
+        setup: Setup,
+        upload: Upload,
+    ) -> Result<SessionId, WebError> {
+        let id = SessionId::random().map_err(WebError::internal)?;
+        let archive = Arc::clone(&self.archive);
+        self.on_pool(move || {
+            let world = Arc::new(upload.world);
+            task.check_in(Arc::clone(&world))?;
+            let first = Session::created(task.clone(), setup);
+            let body = serde_json::to_string(&first).map_err(WebError::internal)?;
+            let mut files = upload.files.contents();
+            let kept = (archive.store).begin(&id, &body, &upload.id, Some(&mut files));
+            kept.map_err(WebError::internal)?;
+            archive.pools.keep(upload.id, &task, world);
+            Ok(())
+        })
+        .await?;
+        self.wake(id).await
+    }
+
+    /// Lets a new session put its first question.
+    async fn wake(&self, id: SessionId) -> Result<SessionId, WebError> {
         match self.look(id, |_| ()).await {
             // It is there, and its first question will be.
             Ok(()) | Err(WebError::Slow) => Ok(id),
             Err(error) => Err(error),
         }
+    }
+
+    /// A file of the upload that the session was created with.
+    pub(crate) async fn file(
+        &self,
+        id: SessionId,
+        name: String,
+    ) -> Result<Option<StoredFile>, WebError> {
+        let archive = Arc::clone(&self.archive);
+        self.on_pool(move || {
+            let store = &archive.store;
+            let upload = store.upload_of(&id).map_err(WebError::internal)?;
+            let find = |upload| store.file(&upload, &name).map_err(WebError::internal);
+            upload.map_or(Ok(None), find)
+        })
+        .await
+    }
+
+    /// The store, for what is read piece by piece.
+    pub(crate) fn store(&self) -> Arc<dyn Store> {
+        Arc::clone(&self.archive.store)
     }
 
     /// What `view` shows of a session that has thought.
@@ -81,7 +154,7 @@ impl Teaching {
         decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
         view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
     ) -> Result<T, WebError> {
-        let store = Arc::clone(&self.store);
+        let archive = Arc::clone(&self.archive);
         let slot = self.slot(id);
         let permits = Arc::clone(&self.permits);
         let work = async move {
@@ -93,9 +166,9 @@ impl Teaching {
                 let _permit = permit;
                 let mut session = match held.take() {
                     Some(session) => session,
-                    None => load(&*store, &id)?,
+                    None => load(&archive, &id)?,
                 };
-                match advance(&*store, &id, &mut session, decide) {
+                match advance(&archive, &id, &mut session, decide) {
                     Ok(position) => {
                         let shown = view(&session, &position);
                         *held = Some(session);
@@ -120,7 +193,7 @@ impl Teaching {
 
     /// A session's log, as it lies in the store.
     pub(crate) async fn log(&self, id: SessionId) -> Result<Vec<Entry>, WebError> {
-        let store = Arc::clone(&self.store);
+        let store = self.store();
         self.on_pool(move || match store.read(&id) {
             Ok(entries) if entries.is_empty() => Err(WebError::NoSession),
             other => other.map_err(WebError::internal),
@@ -130,7 +203,7 @@ impl Teaching {
 
     /// The sessions last worked on.
     pub(crate) async fn list(&self, most: usize) -> Result<Vec<Listed>, WebError> {
-        let store = Arc::clone(&self.store);
+        let store = self.store();
         self.on_pool(move || store.list(most).map_err(WebError::internal))
             .await
     }
@@ -171,8 +244,8 @@ impl Teaching {
     }
 }
 
-fn load(store: &dyn Store, id: &SessionId) -> Result<Session, WebError> {
-    let entries = store.read(id).map_err(WebError::internal)?;
+fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
+    let entries = archive.store.read(id).map_err(WebError::internal)?;
     if entries.is_empty() {
         return Err(WebError::NoSession);
     }
@@ -186,12 +259,21 @@ fn load(store: &dyn Store, id: &SessionId) -> Result<Session, WebError> {
         })
         .collect::<Result<Vec<Event>, _>>()
         .map_err(WebError::Corrupt)?;
-    Session::replay(&events).map_err(WebError::Corrupt)
+    let world = match events.first() {
+        Some(Event::Created { task, .. }) => archive.pools.world(&*archive.store, task),
+        _ => Ok(None),
+    };
+    // Whoever asks for the session cannot have caused it.
+    let world = world.map_err(|error| match error {
+        WebError::Malformed(fault) => WebError::internal(fault),
+        other => other,
+    })?;
+    Session::replay_in(world, &events).map_err(WebError::Corrupt)
 }
 
 /// Decides, appends and thinks; where that led.
 fn advance(
-    store: &dyn Store,
+    archive: &Archive,
     id: &SessionId,
     session: &mut Session,
     decide: impl Fn(&Session) -> Result<Decision, WebError>,
@@ -199,7 +281,7 @@ fn advance(
     loop {
         let already = match decide(session)? {
             Decision::Append(event) => {
-                if !append(store, id, session, &event)? {
+                if !append(archive, id, session, &event)? {
                     continue;
                 }
                 None
@@ -207,7 +289,7 @@ fn advance(
             Decision::Already(position) => Some(position),
         };
         while let Some(event) = session.think() {
-            append(store, id, session, &event)?;
+            append(archive, id, session, &event)?;
         }
         return Ok(match already {
             Some(position) if position != Position::Thinking => position,
@@ -219,19 +301,19 @@ fn advance(
 /// Appends an entry to the store, then to the session; if another writer was
 /// faster, reads the session again instead and says `false`.
 fn append(
-    store: &dyn Store,
+    archive: &Archive,
     id: &SessionId,
     session: &mut Session,
     event: &Event,
 ) -> Result<bool, WebError> {
     let body = serde_json::to_string(event).map_err(WebError::internal)?;
-    match store.append(id, session.entries(), &body) {
+    match archive.store.append(id, session.entries(), &body) {
         Ok(()) => {
             session.apply(event).map_err(WebError::Corrupt)?;
             Ok(true)
         }
         Err(StoreError::Taken { .. }) => {
-            *session = load(store, id)?;
+            *session = load(archive, id)?;
             Ok(false)
         }
         Err(error) => Err(WebError::internal(error)),

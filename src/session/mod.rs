@@ -17,6 +17,7 @@ mod ready;
 mod rule;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
@@ -30,6 +31,7 @@ pub use crate::task::{
     Atom, AtomText, Automaton, Concept, ConceptText, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES,
     MAX_STATES, MAX_SYMBOLS, MAX_WORD, Malformed, SymbolText, Task, Universe, read_word,
 };
+use crate::world::World;
 
 /// A question that was put at some time.
 #[derive(Clone, Debug)]
@@ -108,6 +110,16 @@ impl Session {
     ///
     /// Names the first entry that makes no sense.
     pub fn replay(events: &[Event]) -> Result<Self, Corrupt> {
+        Self::replay_in(None, events)
+    }
+
+    /// Folds a whole log, in this world where its task's is an
+    /// [upload](Task::upload).
+    ///
+    /// # Errors
+    ///
+    /// Names the first entry that makes no sense.
+    pub fn replay_in(world: Option<Arc<World>>, events: &[Event]) -> Result<Self, Corrupt> {
         let corrupt = |message: &str| Corrupt {
             entry: 0,
             message: message.to_owned(),
@@ -126,7 +138,7 @@ impl Session {
                 "it is of version {log}, and this memrep reads version {LOG_VERSION}: use the memrep that wrote it"
             )));
         }
-        let fresh = Self::new(Task::clone(task), setup.clone());
+        let fresh = Self::new(Task::clone(task), setup.clone(), world);
         let mut session = fresh.map_err(|message| corrupt(&message))?;
         for event in rest {
             session.apply(event)?;
@@ -134,8 +146,9 @@ impl Session {
         Ok(session)
     }
 
-    fn new(task: Task, setup: Setup) -> Result<Self, String> {
-        let universe = task.universe().map_err(|error| error.to_string())?;
+    fn new(task: Task, setup: Setup, world: Option<Arc<World>>) -> Result<Self, String> {
+        let universe = task.universe_in(world);
+        let universe = universe.map_err(|error| error.to_string())?;
         Ok(Self {
             learner: pupil::new(&task, &universe, &setup)?,
             universe,

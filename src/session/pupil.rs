@@ -23,6 +23,9 @@ pub(super) trait Pupil: Send {
     fn retract(&mut self, answer: AnswerId) -> bool;
 
     fn counts(&self) -> Counts;
+
+    /// What nothing that can be shown tells about this hypothesis.
+    fn beyond(&self, hypothesis: &Concept) -> Option<Atom>;
 }
 
 /// A learner that was told no answer yet.
@@ -117,6 +120,11 @@ where
 
     fn counts(&self) -> Counts {
         Learner::counts(self)
+    }
+
+    fn beyond(&self, hypothesis: &Concept) -> Option<Atom> {
+        let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
+        self.class().beyond(&hypothesis).map(Atom::from)
     }
 }
 

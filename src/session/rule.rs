@@ -3,7 +3,7 @@
 
 use super::{Position, Session};
 use crate::learner::Question;
-use crate::task::{Concept, Situation};
+use crate::task::{Atom, Concept, Situation};
 use crate::world::World;
 
 impl Session {
@@ -40,6 +40,16 @@ impl Session {
     /// Between those there is none: the last one shown was refuted.
     pub fn hypothesis(&self) -> Option<Concept> {
         self.learned().map(|learned| self.whole(learned))
+    }
+
+    /// A behaviour that would decide what nothing in the world of the task does about
+    /// the learned part, once the teacher has agreed with it; none where all is
+    /// decided.
+    pub fn beyond(&self) -> Option<Atom> {
+        match &self.position {
+            Position::Done(learned) => self.learner.beyond(learned),
+            _ => None,
+        }
     }
 
     /// The part of [`Self::hypothesis`] that is learned.

@@ -1,57 +1,80 @@
-//! The name of a session, which nobody can guess.
+//! The names of sessions and uploads, which nobody can guess.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// 128 random bits, written as 32 hexadecimal digits.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SessionId([u8; 16]);
+/// A name of 128 random bits, written as 32 hexadecimal digits.
+macro_rules! random_name {
+    ($(#[$about:meta])* $name:ident, $(#[$error:meta])* $none:ident) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name([u8; 16]);
 
-/// A text that is no session's name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a session's name is 32 hexadecimal digits")]
-pub struct NoSessionId;
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+        $(#[$error])*
+        pub struct $none;
 
-impl SessionId {
-    /// A new name from the operating system's generator.
-    ///
-    /// # Errors
-    ///
-    /// If the operating system has no randomness to give.
-    pub fn random() -> Result<Self, getrandom::Error> {
-        let mut bytes = [0; 16];
-        getrandom::fill(&mut bytes)?;
-        Ok(Self(bytes))
-    }
-}
-
-impl fmt::Display for SessionId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
-    }
-}
-
-impl fmt::Debug for SessionId {
-    /// Only the beginning: whoever has the whole name can answer.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:02x}{:02x}…", self.0[0], self.0[1])
-    }
-}
-
-impl FromStr for SessionId {
-    type Err = NoSessionId;
-
-    fn from_str(text: &str) -> Result<Self, NoSessionId> {
-        let digits = |c: char| matches!(c, '0'..='9' | 'a'..='f');
-        if text.len() != 32 || !text.chars().all(digits) {
-            return Err(NoSessionId);
+        impl $name {
+            /// A new name from the operating system's generator.
+            ///
+            /// # Errors
+            ///
+            /// If the operating system has no randomness to give.
+            pub fn random() -> Result<Self, getrandom::Error> {
+                let mut bytes = [0; 16];
+                getrandom::fill(&mut bytes)?;
+                Ok(Self(bytes))
+            }
         }
-        let mut bytes = [0; 16];
-        for (i, byte) in bytes.iter_mut().enumerate() {
-            *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).map_err(|_| NoSessionId)?;
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+            }
         }
-        Ok(Self(bytes))
+
+        impl fmt::Debug for $name {
+            /// Only the beginning: whoever has the whole name has what it names.
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{:02x}{:02x}…", self.0[0], self.0[1])
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = $none;
+
+            fn from_str(text: &str) -> Result<Self, $none> {
+                read(text).map(Self).ok_or($none)
+            }
+        }
+    };
+}
+
+random_name!(
+    /// The name of a session: 128 random bits, written as 32 hexadecimal digits.
+    SessionId,
+    /// A text that is no session's name.
+    #[error("a session's name is 32 hexadecimal digits")]
+    NoSessionId
+);
+random_name!(
+    /// The name of an upload: 128 random bits, written as 32 hexadecimal digits.
+    UploadId,
+    /// A text that is no upload's name.
+    #[error("an upload's name is 32 hexadecimal digits")]
+    NoUploadId
+);
+
+fn read(text: &str) -> Option<[u8; 16]> {
+    let digits = |c: char| matches!(c, '0'..='9' | 'a'..='f');
+    if text.len() != 32 || !text.chars().all(digits) {
+        return None;
     }
+    let mut bytes = [0; 16];
+    for (i, byte) in bytes.iter_mut().enumerate() {
+        *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).ok()?;
+    }
+    Some(bytes)
 }
 
 #[cfg(test)]

@@ -1,13 +1,44 @@
-//! Where the logs of sessions last.
+//! Where the logs of sessions last, and the files that were uploaded for them.
 //!
 //! A [`Store`] appends entries to logs and reads them back. An entry is a text
-//! to it: it must not know the learner, nor what an entry means.
+//! to it: it must not know the learner, nor what an entry means; and a file is
+//! bytes with a name and a type.
 
+mod files;
 mod id;
+mod schema;
 mod sqlite;
 
-pub use id::SessionId;
+use std::io::Read;
+
+pub use id::{NoSessionId, NoUploadId, SessionId, UploadId};
 pub use sqlite::Sqlite;
+
+/// The bytes of a file lie in pieces of this size, the last one shorter.
+pub const CHUNK: usize = 256 * 1024;
+
+/// A file that is to be kept with an upload.
+pub struct NewFile<'a> {
+    /// Its path in the upload, unique there.
+    pub name: String,
+    /// Its media type.
+    pub kind: String,
+    /// Its bytes.
+    pub content: Box<dyn Read + 'a>,
+}
+
+/// A file that is kept with an upload.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StoredFile {
+    /// The upload that it belongs to.
+    pub upload: UploadId,
+    /// Its number there.
+    pub number: u32,
+    /// Its media type.
+    pub kind: String,
+    /// Its length in bytes.
+    pub size: u64,
+}
 
 /// One entry of a log, as it lies in the store.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,12 +108,27 @@ pub enum StoreError {
         /// Why, and what to do.
         message: String,
     },
+    /// There is no such upload.
+    #[error("there is no upload {upload:?}")]
+    NoUpload {
+        /// Its name.
+        upload: UploadId,
+    },
+    /// A file that was to be kept could not be read.
+    #[error("`{name}` could not be read to be kept: {error}")]
+    Unread {
+        /// The file.
+        name: String,
+        /// Why.
+        error: std::io::Error,
+    },
     /// The database failed.
     #[error("the database failed: {0}")]
     Database(#[from] rusqlite::Error),
 }
 
-/// Logs of sessions: append-only, one writer for each number.
+/// Logs of sessions: append-only, one writer for each number; and uploads, which
+/// never change.
 pub trait Store: Send + Sync {
     /// Appends an entry. When this returns, the entry outlives the process and
     /// the machine's power.
@@ -110,4 +156,43 @@ pub trait Store: Send + Sync {
     ///
     /// If the database fails.
     fn list(&self, most: usize) -> Result<Vec<Listed>, StoreError>;
+
+    /// Creates a session that has an upload: appends entry 0 of its log. With
+    /// `files` the upload is new and has these files; without, it is there.
+    /// Either all of this happens, or nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::NoUpload`] if it should be there and is not, [`StoreError::Taken`]
+    /// if the session is there already, [`StoreError::Unread`] if a file cannot
+    /// be read; nothing has changed after any error.
+    fn begin(
+        &self,
+        session: &SessionId,
+        body: &str,
+        upload: &UploadId,
+        files: Option<&mut dyn Iterator<Item = NewFile<'_>>>,
+    ) -> Result<(), StoreError>;
+
+    /// The upload that the session was created with, if it was with one.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError>;
+
+    /// The file of this name in the upload.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn file(&self, upload: &UploadId, name: &str) -> Result<Option<StoredFile>, StoreError>;
+
+    /// A piece of a file, from 0: [`CHUNK`] bytes, or what is left at its end;
+    /// nothing after that.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError>;
 }

@@ -6,25 +6,8 @@ use std::time::Duration;
 
 use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior, params};
 
-use super::{Entry, Listed, SessionId, Store, StoreError};
-
-/// "MemR": says in the file's header whose it is.
-const APPLICATION: i64 = 0x4d65_6d52;
-/// The schema's version, in the file's header.
-const VERSION: i64 = 1;
-
-const SCHEMA: &str = "
-CREATE TABLE sessions (
-    id TEXT PRIMARY KEY
-) STRICT, WITHOUT ROWID;
-CREATE TABLE entries (
-    session TEXT NOT NULL REFERENCES sessions (id),
-    seq INTEGER NOT NULL CHECK (seq >= 0),
-    at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
-    body TEXT NOT NULL,
-    PRIMARY KEY (session, seq)
-) STRICT, WITHOUT ROWID;
-";
+use super::schema::{bring_up_to_date, check_header};
+use super::{Entry, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files};
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.
@@ -37,8 +20,8 @@ impl Sqlite {
     ///
     /// # Errors
     ///
-    /// If it is no database, another program's, or of another version; it is
-    /// then left as it was.
+    /// If it is no database, another program's, or of a later version; it is
+    /// then left as it was. One of an earlier version is brought up to date.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let shown = path.display().to_string();
         let unusable = |error: rusqlite::Error| {
@@ -91,50 +74,11 @@ impl Sqlite {
     }
 }
 
-/// Refuses a file that this program did not write, before anything touches it.
-fn check_header(
-    connection: &Connection,
-    path: &str,
-    unusable: impl Fn(rusqlite::Error) -> StoreError,
-) -> Result<(), StoreError> {
-    let number = |sql: &str| -> Result<i64, StoreError> {
-        connection
-            .query_row(sql, [], |row| row.get(0))
-            .map_err(&unusable)
-    };
-    let application = number("PRAGMA application_id")?;
-    let version = number("PRAGMA user_version")?;
-    if application == APPLICATION {
-        if version == VERSION {
-            return Ok(());
-        }
-        return Err(StoreError::Version {
-            path: path.to_owned(),
-            found: version,
-            expected: VERSION,
-        });
-    }
-    if application != 0 || version != 0 || number("SELECT count(*) FROM sqlite_schema")? != 0 {
-        return Err(StoreError::Foreign {
-            path: path.to_owned(),
-        });
-    }
-    Ok(())
-}
-
 fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", "ON")?;
-    // Immediate, so that of two processes that find an empty file one waits.
-    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    let version: i64 = transaction.query_row("PRAGMA user_version", [], |row| row.get(0))?;
-    if version == 0 {
-        transaction.execute_batch(SCHEMA)?;
-        transaction.pragma_update(None, "application_id", APPLICATION)?;
-        transaction.pragma_update(None, "user_version", VERSION)?;
-    }
-    transaction.commit()?;
+    bring_up_to_date(&mut connection)?;
     Ok(Sqlite {
         connection: Mutex::new(connection),
     })
@@ -202,6 +146,54 @@ impl Store for Sqlite {
             })
         })?;
         Ok(rows.collect::<rusqlite::Result<_>>()?)
+    }
+
+    fn begin(
+        &self,
+        session: &SessionId,
+        body: &str,
+        upload: &UploadId,
+        files: Option<&mut dyn Iterator<Item = NewFile<'_>>>,
+    ) -> Result<(), StoreError> {
+        let mut connection = self.connection();
+        let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+        match files {
+            Some(new) => files::insert(&transaction, upload, new)?,
+            None if files::has(&transaction, upload)? => {}
+            None => return Err(StoreError::NoUpload { upload: *upload }),
+        }
+        let id = session.to_string();
+        let known = transaction
+            .prepare("SELECT 1 FROM sessions WHERE id = ?1")?
+            .exists([&id])?;
+        if known {
+            return Err(StoreError::Taken {
+                session: *session,
+                seq: 0,
+            });
+        }
+        transaction.execute(
+            "INSERT INTO sessions (id, upload) VALUES (?1, ?2)",
+            params![id, upload.to_string()],
+        )?;
+        transaction.execute(
+            "INSERT INTO entries (session, seq, body) VALUES (?1, 0, ?2)",
+            params![id, body],
+        )?;
+        transaction.commit()?;
+        Ok(())
+    }
+
+    fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {
+        files::of_session(&self.connection(), session)
+    }
+
+    fn file(&self, upload: &UploadId, name: &str) -> Result<Option<StoredFile>, StoreError> {
+        files::find(&self.connection(), upload, name)
+    }
+
+    fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError> {
+        files::chunk(&self.connection(), file, place)
     }
 }
 

@@ -144,6 +144,36 @@ pub(super) fn read(fields: &Fields<'_>, universe: &Universe, faults: &mut Faults
     kept
 }
 
+/// Checks again that the examples and the practice question can happen, once their
+/// world is there.
+///
+/// # Errors
+///
+/// Names the first that cannot.
+pub(super) fn check_all(
+    examples: &[Example],
+    practice: Option<&Practice>,
+    universe: &Universe,
+) -> Result<(), Malformed> {
+    let one = |atom: &AtomText, label, path: &str| {
+        let atom = universe.parse(atom);
+        let atom = atom.map_err(|error| Malformed::new(path, error.to_string()))?;
+        check(universe, &atom, label, path)
+    };
+    for (place, example) in examples.iter().enumerate() {
+        let path = format!("examples[{place}]");
+        one(&example.atom, Some(example.label), &path)?;
+    }
+    match practice.map(|practice| &practice.asks) {
+        None => Ok(()),
+        Some(Practised::Judgement(atom)) => one(atom, None, "practice.word"),
+        Some(Practised::Comparison { first, second }) => {
+            one(first, None, "practice.first")?;
+            one(second, None, "practice.second")
+        }
+    }
+}
+
 /// Checks that a behaviour can happen, and that its label is not known otherwise.
 fn check(
     universe: &Universe,

@@ -105,11 +105,20 @@ impl TaskFile {
     }
 }
 
-fn from_toml(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
-    let (value, places) = places::read(text).map_err(|(place, message)| {
+/// What a TOML text says, as JSON.
+pub(super) fn content(text: &str) -> Result<serde_json::Value, Fault> {
+    parsed(text).map(|(value, _)| value)
+}
+
+fn parsed(text: &str) -> Result<(serde_json::Value, Places), Fault> {
+    places::read(text).map_err(|(place, message)| {
         let place = place.unwrap_or(Place { line: 1, column: 1 });
-        vec![placed(place, Malformed::new("", message))]
-    })?;
+        placed(place, Malformed::new("", message))
+    })
+}
+
+fn from_toml(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
+    let (value, places) = parsed(text).map_err(|fault| vec![fault])?;
     read(&value, folder).map_err(|faults| in_order(faults, &places, text))
 }
 

@@ -18,6 +18,8 @@ mod symbols;
 mod target;
 mod universe;
 
+use std::sync::Arc;
+
 use automata::{Alphabet, Dfa, Symbol};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -29,7 +31,7 @@ pub use examples::{Example, Practice, Practised, read_word};
 pub use file::{Fault, TaskFile, Unusable};
 pub use reader::{Fields, Malformed};
 pub(crate) use situation::{LONGEST, STEPS};
-pub use situation::{PriorText, Rule, Situation, WorldText};
+pub use situation::{PriorText, Rule, Situation, Source, WorldText};
 pub use symbols::{Colour, SymbolText};
 pub(crate) use universe::Bare;
 pub use universe::{
@@ -43,6 +45,7 @@ use self::subject::Subject;
 use crate::concept::Prior;
 use crate::evidence::Fact;
 use crate::learner::Strategy;
+use crate::world::World;
 
 /// The largest number of symbols a taught alphabet may have: more cannot be
 /// offered as buttons.
@@ -142,6 +145,15 @@ impl Task {
         }
     }
 
+    /// The content of a task file, TOML, as [`Self::from_json`] reads it.
+    ///
+    /// # Errors
+    ///
+    /// Says where it ceases to be TOML.
+    pub fn toml_content(text: &str) -> Result<Value, Fault> {
+        file::content(text)
+    }
+
     /// The alphabet of the symbols' names; none where the behaviours are no words.
     pub fn alphabet(&self) -> Option<Alphabet> {
         symbols::alphabet(&self.symbols).ok()
@@ -168,12 +180,21 @@ impl Task {
     ///
     /// As for [`Task::situation`].
     pub fn universe(&self) -> Result<Universe, Malformed> {
+        self.universe_in(None)
+    }
+
+    /// The same in this world, where the task's is an [upload](Self::upload).
+    ///
+    /// # Errors
+    ///
+    /// As for [`Task::situation_in`].
+    pub fn universe_in(&self, world: Option<Arc<World>>) -> Result<Universe, Malformed> {
         if let Some(class) = &self.class {
             return class.universe();
         }
         Ok(Universe::Words {
             alphabet: symbols::alphabet(&self.symbols)?,
-            situation: self.situation()?,
+            situation: self.situation_in(world)?,
         })
     }
 
@@ -182,14 +203,30 @@ impl Task {
     ///
     /// # Errors
     ///
-    /// If the task was put together by hand, or its recordings are not what they
-    /// were when it was read.
+    /// If the task was put together by hand, its recordings are not what they
+    /// were when it was read, or they are an upload: [`Self::situation_in`].
     pub fn situation(&self) -> Result<Option<Situation>, Malformed> {
-        if self.world.is_none() && self.prior.is_empty() {
+        self.situation_in(None)
+    }
+
+    /// The same with this world, in place of the one that the task tells.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::situation`], or if nothing is left to learn in the world.
+    pub fn situation_in(&self, world: Option<Arc<World>>) -> Result<Option<Situation>, Malformed> {
+        if world.is_none() && self.world.is_none() && self.prior.is_empty() {
             return Ok(None);
         }
         let alphabet = symbols::alphabet(&self.symbols)?;
-        let world = situation::build_world(self.world.as_ref(), &self.symbols, &alphabet)?;
+        let world = match world {
+            Some(world) => world,
+            None => Arc::new(situation::build_world(
+                self.world.as_ref(),
+                &self.symbols,
+                &alphabet,
+            )?),
+        };
         let rules = |rules: &[Rule]| -> Result<Vec<Dfa>, Malformed> {
             rules.iter().map(|rule| rule.dfa(&alphabet)).collect()
         };
@@ -197,6 +234,28 @@ impl Task {
         let prior = Prior::new(&alphabet, holds, suffices)
             .map_err(|error| Malformed::new("prior", error.to_string()))?;
         situation::build(world, prior, "prior").map(Some)
+    }
+
+    /// Checks what could not be when the task was read, because its world is an
+    /// upload: that its examples and its practice question are recorded, and that
+    /// what is known beforehand leaves something to learn.
+    ///
+    /// # Errors
+    ///
+    /// Names the first that is not.
+    pub fn check_in(&self, world: Arc<World>) -> Result<(), Malformed> {
+        let universe = self.universe_in(Some(world))?;
+        examples::check_all(&self.examples, self.practice.as_ref(), &universe)
+    }
+
+    /// The name of the upload that the task's world is, if it is one.
+    pub fn upload(&self) -> Option<&str> {
+        match &self.world {
+            Some(WorldText::Pool {
+                source: Source::Upload(upload),
+            }) => Some(upload),
+            _ => None,
+        }
     }
 
     /// What stands for each symbol in the map of a grid.

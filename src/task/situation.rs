@@ -42,11 +42,23 @@ pub enum WorldText {
         /// When a tile gives its symbol.
         labelling: Labelling,
     },
-    /// Recordings, in a file of JSON lines.
+    /// Recordings, as JSON lines.
     Pool {
-        /// The file.
-        recordings: PathBuf,
+        /// Where they are.
+        #[serde(flatten)]
+        source: Source,
     },
+}
+
+/// Where recordings are.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Source {
+    /// In this file.
+    #[serde(rename = "recordings")]
+    File(PathBuf),
+    /// In an upload of this name, which whoever keeps uploads hands in.
+    Upload(String),
 }
 
 /// What is known beforehand, as it is written.
@@ -119,10 +131,12 @@ impl Situation {
         path: &str,
     ) -> Result<(), Malformed> {
         if !self.world.is_feasible(word) {
-            return Err(Malformed::new(
-                path,
-                "this cannot happen in the world of the task: leave it out, or change the world",
-            ));
+            let message = if matches!(*self.world, World::Pool(_)) {
+                "no recording shows this: leave it out, or add a recording of it"
+            } else {
+                "this cannot happen in the world of the task: leave it out, or change the world"
+            };
+            return Err(Malformed::new(path, message));
         }
         match (self.prior.settled(word), label) {
             (Some(settled), Some(label)) if settled != label => Err(Malformed::new(
@@ -264,9 +278,10 @@ pub(super) fn read_world(
             }
         }
         "pool" => {
-            faults.0.extend(fields.unknown(&["kind", "recordings"]));
+            let keys = ["kind", "recordings", "upload"];
+            faults.0.extend(fields.unknown(&keys));
             WorldText::Pool {
-                recordings: faults.keep(read_recordings(&fields, files))?,
+                source: faults.keep(read_source(&fields, files))?,
             }
         }
         _ => {
@@ -312,15 +327,40 @@ fn read_labelling(fields: &Fields<'_>) -> Result<Labelling, Malformed> {
     }
 }
 
-fn read_recordings(fields: &Fields<'_>, files: Files<'_>) -> Result<PathBuf, Malformed> {
+fn read_source(fields: &Fields<'_>, files: Files<'_>) -> Result<Source, Malformed> {
     let path = fields.path_of("recordings");
-    match fields.text("recordings", 4000)? {
-        Some(named) => files.find(&named, &path),
-        None => Err(Malformed::new(
+    let named = fields.text("recordings", 4000)?;
+    let upload = fields.text("upload", 60)?;
+    match (files, named, upload) {
+        (Files::In(_), Some(named), None) => files.find(&named, &path).map(Source::File),
+        (Files::In(_), _, Some(_)) => Err(Malformed::new(
+            fields.path_of("upload"),
+            "an upload is known to its server alone: name a file of recordings as `recordings`",
+        )),
+        (Files::In(_), None, None) => Err(Malformed::new(
             path,
             "name the file of the recordings, one JSON object a line",
         )),
+        (Files::None, None, Some(upload)) => Ok(Source::Upload(upload)),
+        (Files::None, named, _) => {
+            let file = named.map_or_else(String::new, |file| format!("`{file}`: "));
+            Err(Malformed::new(
+                path,
+                format!(
+                    "{file}a session reads no files: send the recordings with the task as `multipart/form-data`, or name what was sent before as `upload`"
+                ),
+            ))
+        }
     }
+}
+
+/// Whether the world is built elsewhere, of what was uploaded.
+pub(super) fn is_uploaded(text: Option<&WorldText>) -> bool {
+    let source = match text {
+        Some(WorldText::Pool { source }) => Some(source),
+        _ => None,
+    };
+    matches!(source, Some(Source::Upload(_)))
 }
 
 /// The world that is written; without one, all words.
@@ -338,7 +378,19 @@ pub(super) fn build_world(
             steps,
             labelling,
         }) => World::Grid(build_grid(map, symbols, alphabet, *labelling, *steps)?),
-        Some(WorldText::Pool { recordings }) => {
+        Some(WorldText::Pool {
+            source: Source::Upload(upload),
+        }) => {
+            return Err(Malformed::new(
+                "world.upload",
+                format!(
+                    "the recordings of the upload `{upload}` are not here: ask the server that has them"
+                ),
+            ));
+        }
+        Some(WorldText::Pool {
+            source: Source::File(recordings),
+        }) => {
             let fault = |error: &dyn std::fmt::Display| {
                 let message = format!("{}: {error}", recordings.display());
                 Malformed::new("world.recordings", message)
@@ -387,15 +439,12 @@ fn build_grid(
 }
 
 /// Both together.
-pub(super) fn build(world: World, prior: Prior, path: &str) -> Result<Situation, Malformed> {
+pub(super) fn build(world: Arc<World>, prior: Prior, path: &str) -> Result<Situation, Malformed> {
     if !world.has_word(prior.open()) {
         return Err(Malformed::new(
             path,
             PriorError::NothingOpenHere.to_string(),
         ));
     }
-    Ok(Situation {
-        world: Arc::new(world),
-        prior,
-    })
+    Ok(Situation { world, prior })
 }

@@ -1,6 +1,8 @@
 //! What a task is about, as it is read: words of symbols in a world, or another
 //! class.
 
+use std::sync::Arc;
+
 use super::class::{self, ClassText};
 use super::reader::{Faults, Fields, Malformed};
 use super::situation::{self, Files, PriorText, WorldText};
@@ -54,10 +56,13 @@ impl Subject {
             && lettered
             && world.is_some() == told.is_some()
             && (world.is_some() || !text.is_empty())
+            // Its recordings come later.
+            && !situation::is_uploaded(world.as_ref())
         {
             let path = if text.is_empty() { "world" } else { "prior" };
             let world = situation::build_world(world.as_ref(), &symbols, &alphabet);
-            let whole = world.and_then(|world| situation::build(world, prior.clone(), path));
+            let whole =
+                world.and_then(|world| situation::build(Arc::new(world), prior.clone(), path));
             built = faults.keep(whole);
         }
         Some(Self {

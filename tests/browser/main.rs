@@ -11,6 +11,7 @@ mod drives;
 mod house;
 mod page;
 mod pictures;
+mod recordings;
 mod teaching;
 mod walks;
 

@@ -5,8 +5,12 @@ mod api;
 mod classes;
 mod conflicts;
 mod pages;
+mod parts;
 #[cfg(unix)]
 mod serve;
 mod site;
 mod store;
+mod upload_faults;
+mod upload_limits;
+mod uploads;
 mod worlds;

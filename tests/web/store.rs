@@ -1,9 +1,10 @@
 //! The store keeps what was appended, once, and leaves other files alone.
 
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-use memrep::store::{SessionId, Sqlite, Store, StoreError};
+use memrep::store::{CHUNK, NewFile, SessionId, Sqlite, Store, StoreError, UploadId};
 
 fn id() -> SessionId {
     SessionId::random().unwrap()
@@ -85,6 +86,116 @@ fn of_writers_that_saw_the_same_one_succeeds() {
     assert_eq!(stores[1].read(&session).unwrap().len(), 11);
 }
 
+/// A file that version 1 wrote is brought up to date, keeps its sessions, and takes
+/// uploads.
+#[test]
+fn files_of_version_1_are_brought_up_to_date() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.db");
+    std::fs::write(&path, include_bytes!("fixtures/version-1.db")).unwrap();
+    let old: SessionId = "49e2833f13f9b31ccbe73e5bdd7afc88".parse().unwrap();
+    for _ in 0..2 {
+        let store = Sqlite::open(&path).unwrap();
+        let entries = store.read(&old).unwrap();
+        assert_eq!(entries.len(), 10);
+        assert!(entries[0].body.contains("created"), "{}", entries[0].body);
+        assert_eq!(store.upload_of(&old).unwrap(), None);
+        assert_eq!(store.list(5).unwrap()[0].id, old);
+    }
+    let store = Sqlite::open(&path).unwrap();
+    let upload = UploadId::random().unwrap();
+    let new = id();
+    let mut files = [file("a", &[1, 2, 3])].into_iter();
+    store
+        .begin(&new, "first", &upload, Some(&mut files))
+        .unwrap();
+    assert_eq!(store.upload_of(&new).unwrap(), Some(upload));
+    let version: i64 = rusqlite::Connection::open(&path)
+        .unwrap()
+        .pragma_query_value(None, "user_version", |row| row.get(0))
+        .unwrap();
+    assert_eq!(version, 2);
+}
+
+fn file<'a>(name: &str, content: &'a [u8]) -> NewFile<'a> {
+    NewFile {
+        name: name.to_owned(),
+        kind: "text/plain".to_owned(),
+        content: Box::new(content),
+    }
+}
+
+/// A reader that fails after some bytes.
+struct Broken(usize);
+
+impl Read for Broken {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.0 == 0 {
+            return Err(std::io::Error::other("the disk is gone"));
+        }
+        let read = self.0.min(buffer.len());
+        self.0 -= read;
+        Ok(read)
+    }
+}
+
+/// Files come back byte by byte, in chunks; what fails leaves nothing.
+#[test]
+fn uploads_are_kept_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.db");
+    let store = Sqlite::open(&path).unwrap();
+    let rows = || -> Vec<i64> {
+        let connection = rusqlite::Connection::open(&path).unwrap();
+        let count = |table: &&str| {
+            let sql = format!("SELECT count(*) FROM {table}");
+            connection.query_row(&sql, [], |row| row.get(0)).unwrap()
+        };
+        let tables = ["sessions", "entries", "uploads", "files", "chunks"];
+        tables.iter().map(count).collect()
+    };
+    let (session, upload) = (id(), UploadId::random().unwrap());
+    let long: Vec<u8> = (0..2 * CHUNK + 5).map(|i| (i % 251) as u8).collect();
+
+    let broken = NewFile {
+        content: Box::new(Broken(CHUNK + 1)),
+        ..file("broken", &[])
+    };
+    let mut files = [file("whole", &long), broken].into_iter();
+    let failed = store.begin(&session, "first", &upload, Some(&mut files));
+    assert!(matches!(failed, Err(StoreError::Unread { name, .. }) if name == "broken"));
+    let failed = store.begin(&session, "first", &upload, None);
+    assert!(matches!(failed, Err(StoreError::NoUpload { .. })));
+    assert_eq!(rows(), [0; 5]);
+
+    let mut files = [file("empty", &[]), file("long", &long)].into_iter();
+    store
+        .begin(&session, "first", &upload, Some(&mut files))
+        .unwrap();
+    assert_eq!(rows(), [1, 1, 1, 2, 3]);
+    let again = store.begin(&session, "first", &upload, None);
+    assert!(matches!(again, Err(StoreError::Taken { seq: 0, .. })));
+    store.begin(&id(), "second", &upload, None).unwrap();
+    assert_eq!(rows(), [2, 2, 1, 2, 3]);
+
+    let found = store.file(&upload, "long").unwrap().unwrap();
+    assert_eq!(
+        (found.size, &*found.kind),
+        (long.len() as u64, "text/plain")
+    );
+    let chunks = (0..4).map(|place| store.chunk(&found, place).unwrap());
+    let chunks: Vec<Vec<u8>> = chunks.collect();
+    let lengths: Vec<usize> = chunks.iter().map(Vec::len).collect();
+    assert_eq!(lengths, [CHUNK, CHUNK, 5, 0]);
+    assert_eq!(chunks.concat(), long);
+    let empty = store.file(&upload, "empty").unwrap().unwrap();
+    assert_eq!(store.chunk(&empty, 0).unwrap(), Vec::<u8>::new());
+    assert_eq!(store.file(&upload, "other").unwrap(), None);
+    let other = UploadId::random().unwrap();
+    assert_eq!(store.file(&other, "long").unwrap(), None);
+    assert_eq!(store.upload_of(&id()).unwrap(), None);
+}
+
 fn refusal(path: &Path) -> String {
     match Sqlite::open(path) {
         Ok(_) => panic!("{} was opened", path.display()),
@@ -123,7 +234,7 @@ fn other_files_are_refused_and_left_as_they_are() {
             "not an SQLite file; name another file with --database",
         ),
         (&foreign, "a database of another program"),
-        (&newer, "version 99, and this memrep reads version 1"),
+        (&newer, "version 99, and this memrep reads version 2"),
     ] {
         let before = std::fs::read(path).unwrap();
         let message = refusal(path);

@@ -184,6 +184,10 @@ fn the_first_broken_line_is_named_with_its_field() {
         "line 3, `media.paths[1]`: `b.svg` is no picture that a browser shows: give a file that ends in .png, .jpg, .jpeg, .webp",
     );
     media(
+        r#"{"kind":"cells","cells":[[3,1],[3,500]]}"#,
+        "line 3, `media.cells`: the cells lie in 1 rows and 500 columns: at most 200 of each can be drawn",
+    );
+    media(
         r#"{"kind":"frames","paths":[]}"#,
         "line 3, `media.paths`: it has 0 entries: give 1 to 1001",
     );

@@ -315,6 +315,10 @@ impl ConceptClass for Situated {
         first.into_iter().filter_map(of).collect()
     }
 
+    fn beyond(&self, hypothesis: &Dfa) -> Option<Word> {
+        Self::beyond(self, hypothesis)
+    }
+
     fn drawn_from(&self, hypothesis: &Dfa) -> String {
         let world = self.world.drawn_from(longest(hypothesis));
         format!("half of them accepted by it and half rejected, {world}")

@@ -1,6 +1,7 @@
 //! Behaviours and rules as they are written.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::task::Automaton;
 
@@ -14,6 +15,17 @@ pub enum AtomText {
     Point(Vec<f64>),
     /// The name of a behaviour.
     Item(String),
+}
+
+impl AtomText {
+    /// The same without its key: `["a","b"]`.
+    pub fn bare(&self) -> Value {
+        match self {
+            Self::Word(names) => names.as_slice().into(),
+            Self::Point(values) => values.as_slice().into(),
+            Self::Item(name) => name.as_str().into(),
+        }
+    }
 }
 
 /// The same without its key, for [`serde`]'s `with`: `["a","b"]`.

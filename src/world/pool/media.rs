@@ -4,6 +4,8 @@ use serde::Deserialize;
 
 /// The most pictures of a recording, and the most cells.
 const MOST: usize = 1001;
+/// The most rows and the most columns that cells may lie in.
+const WIDEST: u16 = 200;
 /// The longest path of a file, in bytes.
 const LONGEST_PATH: usize = 255;
 
@@ -71,8 +73,32 @@ impl Media {
             }
             Self::Animation { path } => check_path("media.path", path, "animation", ANIMATIONS),
             Self::Video { path } => check_path("media.path", path, "video", VIDEOS),
-            Self::Cells { cells } => amount("media.cells", cells.len()),
+            Self::Cells { cells } => {
+                amount("media.cells", cells.len())?;
+                let sides = [0, 1].map(|side| extent(cells, side));
+                if sides.iter().all(|(_, length)| *length <= WIDEST.into()) {
+                    return Ok(());
+                }
+                let [(_, rows), (_, columns)] = sides;
+                let message = format!(
+                    "the cells lie in {rows} rows and {columns} columns: at most {WIDEST} of each can be drawn"
+                );
+                Err(wrong("media.cells", message))
+            }
         }
+    }
+
+    /// The files that it needs, each with the path of the field that names it.
+    pub fn named(&self) -> impl Iterator<Item = (String, &str)> {
+        let listed = matches!(self, Self::Frames { .. });
+        self.files().enumerate().map(move |(place, path)| {
+            let field = if listed {
+                format!("media.paths[{place}]")
+            } else {
+                "media.path".to_owned()
+            };
+            (field, path)
+        })
     }
 
     /// The files that it needs.
@@ -84,6 +110,14 @@ impl Media {
         };
         paths.iter().map(String::as_str)
     }
+}
+
+/// The least of the cells' rows (side 0) or columns (side 1), and how many there are
+/// from it to the greatest.
+pub fn extent(cells: &[[u16; 2]], side: usize) -> (u16, u32) {
+    let places = || cells.iter().map(|cell| cell[side]);
+    let (least, most) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
+    (least, u32::from(most - least) + 1)
 }
 
 fn wrong(field: &str, message: String) -> MediaError {

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::index::Index;
 use super::machine::Machine;
-pub use media::{Media, MediaError};
+pub use media::{Media, MediaError, extent};
 pub use reader::{PoolError, PoolReader};
 
 /// The most recordings of a pool.
@@ -31,6 +31,8 @@ pub struct Recording {
     pub complete: bool,
     /// What there is to see of it.
     pub media: Option<Media>,
+    /// The line of the file that it stood on, from 1.
+    pub line: usize,
 }
 
 /// Uploaded trajectories.

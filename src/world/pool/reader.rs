@@ -242,6 +242,7 @@ impl PoolReader {
             word,
             complete: line.complete,
             media,
+            line: self.line,
         })
     }
 

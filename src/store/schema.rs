@@ -1,0 +1,104 @@
+//! The tables, and how those of an earlier version become those of this one.
+
+use rusqlite::{Connection, Transaction, TransactionBehavior};
+
+use super::StoreError;
+
+/// "MemR": says in the file's header whose it is.
+const APPLICATION: i64 = 0x4d65_6d52;
+/// The schema's version, in the file's header.
+const VERSION: i64 = 2;
+
+/// What makes each version out of the one before, from version 1. A step that
+/// was released is never changed.
+const STEPS: [&str; VERSION as usize] = [
+    "
+CREATE TABLE sessions (
+    id TEXT PRIMARY KEY
+) STRICT, WITHOUT ROWID;
+CREATE TABLE entries (
+    session TEXT NOT NULL REFERENCES sessions (id),
+    seq INTEGER NOT NULL CHECK (seq >= 0),
+    at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+    body TEXT NOT NULL,
+    PRIMARY KEY (session, seq)
+) STRICT, WITHOUT ROWID;
+",
+    // Files are cut into rows, so that no row of megabytes is ever in memory.
+    "
+CREATE TABLE uploads (
+    id TEXT PRIMARY KEY,
+    at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))
+) STRICT, WITHOUT ROWID;
+CREATE TABLE files (
+    upload TEXT NOT NULL REFERENCES uploads (id),
+    number INTEGER NOT NULL CHECK (number >= 0),
+    name TEXT NOT NULL,
+    kind TEXT NOT NULL,
+    size INTEGER NOT NULL CHECK (size >= 0),
+    PRIMARY KEY (upload, number),
+    UNIQUE (upload, name)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE chunks (
+    upload TEXT NOT NULL,
+    file INTEGER NOT NULL,
+    place INTEGER NOT NULL CHECK (place >= 0),
+    bytes BLOB NOT NULL,
+    PRIMARY KEY (upload, file, place),
+    FOREIGN KEY (upload, file) REFERENCES files (upload, number)
+) STRICT;
+ALTER TABLE sessions ADD COLUMN upload TEXT REFERENCES uploads (id);
+",
+];
+
+/// Refuses a file that this program did not write, before anything touches it.
+pub(super) fn check_header(
+    connection: &Connection,
+    path: &str,
+    unusable: impl Fn(rusqlite::Error) -> StoreError,
+) -> Result<(), StoreError> {
+    let number = |sql: &str| -> Result<i64, StoreError> {
+        connection
+            .query_row(sql, [], |row| row.get(0))
+            .map_err(&unusable)
+    };
+    let application = number("PRAGMA application_id")?;
+    let version = number("PRAGMA user_version")?;
+    if application == APPLICATION {
+        if (1..=VERSION).contains(&version) {
+            return Ok(());
+        }
+        return Err(StoreError::Version {
+            path: path.to_owned(),
+            found: version,
+            expected: VERSION,
+        });
+    }
+    if application != 0 || version != 0 || number("SELECT count(*) FROM sqlite_schema")? != 0 {
+        return Err(StoreError::Foreign {
+            path: path.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// Makes the tables, or brings those of an earlier version to this one: all of it,
+/// or nothing.
+pub(super) fn bring_up_to_date(connection: &mut Connection) -> rusqlite::Result<()> {
+    // Immediate, so that of two processes that find an empty file one waits.
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let found: i64 = transaction.query_row("PRAGMA user_version", [], |row| row.get(0))?;
+    if found < VERSION {
+        climb(&transaction, found)?;
+    }
+    transaction.commit()
+}
+
+fn climb(transaction: &Transaction<'_>, from: i64) -> rusqlite::Result<()> {
+    let done = usize::try_from(from).unwrap_or(0);
+    STEPS[done..]
+        .iter()
+        .try_for_each(|step| transaction.execute_batch(step))?;
+    transaction.pragma_update(None, "application_id", APPLICATION)?;
+    transaction.pragma_update(None, "user_version", VERSION)
+}

@@ -1,0 +1,67 @@
+// Says how far an upload is, and keeps the chosen files where something is wrong.
+
+const FILES = "input[type=file]";
+
+const bind = () => {
+  const form = document.getElementById("own-task");
+  form?.addEventListener("submit", (event) => {
+    const chosen = [...form.querySelectorAll(FILES)].some((input) => input.files.length > 0);
+    if (!chosen) return;
+    event.preventDefault();
+    // It is sent here, and can be sent again.
+    event.stopPropagation();
+    send(form);
+  });
+};
+
+const send = (form) => {
+  const line = form.querySelector("#progress");
+  const [bar, text] = [line.querySelector("progress"), line.querySelector("span")];
+  const submit = form.querySelector("button.primary");
+  const say = (sentence) => { text.textContent = sentence; line.hidden = false; };
+  const free = () => { submit.disabled = false; };
+  submit.disabled = true;
+  bar.value = 0;
+  say("Sending…");
+  const request = new XMLHttpRequest();
+  request.open("POST", form.action);
+  request.upload.addEventListener("progress", ({ lengthComputable, loaded, total }) => {
+    if (!lengthComputable) return;
+    bar.value = loaded / total;
+    const size = (bytes) => (bytes / 1048576).toFixed(1);
+    say(loaded < total ? `Sent ${size(loaded)} of ${size(total)} MiB` : "Sent. The recordings are being read…");
+  });
+  request.addEventListener("error", () => {
+    say("The connection broke off, and nothing was kept: try again.");
+    free();
+  });
+  request.addEventListener("load", () => {
+    const page = new DOMParser().parseFromString(request.responseText, "text/html");
+    const main = page.querySelector("main");
+    if (request.status < 400 && request.responseURL) {
+      location.assign(request.responseURL);
+    } else if (main?.querySelector("#own-task")) {
+      const kept = [...form.querySelectorAll(FILES)];
+      document.querySelector("main").replaceWith(main);
+      for (const input of main.querySelectorAll(FILES)) {
+        const before = kept.find((old) => old.id === input.id);
+        if (!before) continue;
+        // Of two files of one name the browser has the one that was chosen.
+        for (const name of ["aria-invalid", "aria-describedby"]) {
+          if (input.hasAttribute(name)) before.setAttribute(name, input.getAttribute(name));
+          else before.removeAttribute(name);
+        }
+        input.replaceWith(before);
+      }
+      main.querySelector("#again")?.remove();
+      bind();
+      main.querySelector("[aria-invalid]")?.focus();
+    } else {
+      say(main?.querySelector(".lead")?.textContent ?? "That did not work: try again.");
+      free();
+    }
+  });
+  request.send(new FormData(form));
+};
+
+bind();
