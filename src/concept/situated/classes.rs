@@ -37,6 +37,20 @@ struct Group {
 struct Member {
     dfa: Dfa,
     class: usize,
+    told: Told,
+}
+
+/// What a concept says of the first of the telling words.
+#[derive(Default)]
+struct Told(Vec<bool>);
+
+impl Told {
+    /// What it says of all of them.
+    fn all(&mut self, dfa: &Dfa, telling: &[Word]) -> &[bool] {
+        let new = telling[self.0.len()..].iter();
+        self.0.extend(new.map(|word| dfa.accepts(word)));
+        &self.0
+    }
 }
 
 impl Classes {
@@ -71,8 +85,11 @@ impl Classes {
         let group = (self.groups.entry(catalogue.signature(dfa, SIGNED))).or_default();
         let mut own = || {
             self.count += 1;
-            let (dfa, class) = (dfa.clone(), self.count);
-            Member { dfa, class }
+            Member {
+                dfa: dfa.clone(),
+                class: self.count,
+                told: Told::default(),
+            }
         };
         if group.lone.is_none() && group.parts.is_empty() {
             return group.lone.insert(own()).class;
@@ -83,9 +100,10 @@ impl Classes {
         }
         let labels = catalogue.signature(dfa, usize::MAX);
         let alike = group.parts.entry(labels).or_default();
-        for member in &*alike {
-            let differs = |word: &Word| member.dfa.accepts(word) != dfa.accepts(word);
-            if self.telling.iter().any(differs) {
+        let mut told = Told::default();
+        for member in &mut *alike {
+            let says = told.all(dfa, &self.telling);
+            if member.told.all(&member.dfa, &self.telling) != says {
                 continue;
             }
             match separate(&member.dfa, dfa) {
