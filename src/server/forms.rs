@@ -4,6 +4,7 @@ use automata::{Alphabet, Word};
 use serde_json::{Value, json};
 
 use super::error::WebError;
+use super::upload;
 use crate::evidence::Comparison;
 use crate::learner::Reply;
 use crate::session::{Atom, Fields, MAX_WORD, Malformed, Task, Universe};
@@ -97,6 +98,30 @@ pub(crate) fn plain_reply(answer: &str) -> Result<Reply<Atom>, Malformed> {
     })
 }
 
+/// The field of the start page's form in which a task file comes.
+pub(crate) const FILE: &str = "file";
+
+/// The content of a task file, JSON or TOML. A target is left out: it is for scripted
+/// teachers, and people are never shown it.
+///
+/// # Errors
+///
+/// Says where it ceases to be one of the two.
+pub(crate) fn task_content(text: &str) -> Result<Value, String> {
+    let mut content = if text.trim_start().starts_with('{') {
+        serde_json::from_str(text).map_err(|error| format!("this is not JSON: {error}"))?
+    } else {
+        Task::toml_content(text).map_err(|fault| {
+            let line = fault.line.unwrap_or(1);
+            format!("line {line}: {}", fault.message)
+        })?
+    };
+    if let Value::Object(task) = &mut content {
+        task.remove("target");
+    }
+    Ok(content)
+}
+
 /// A form's fields, in the order sent.
 pub(crate) struct Form(Vec<(String, String)>);
 
@@ -117,6 +142,25 @@ impl Form {
     /// Whether the form has the field at all.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.0.iter().any(|(key, _)| key == name)
+    }
+
+    /// Whether it has a task file.
+    pub(crate) fn has_file(&self) -> bool {
+        !self.text(FILE).trim().is_empty()
+    }
+
+    /// The task of a task file.
+    fn file_task(&self, upload: Option<UploadId>) -> Result<Task, Malformed> {
+        let fault = |message: String| Malformed::new(FILE, message);
+        let mut task = task_content(self.text(FILE)).map_err(fault)?;
+        let named = |error: Malformed| {
+            let path = error.path.strip_prefix("task.").unwrap_or(&error.path);
+            fault(format!("`{path}`: {}", error.message))
+        };
+        if let Some(upload) = upload {
+            upload::use_upload(&mut task, upload).map_err(named)?;
+        }
+        Task::from_json(&task).map_err(named)
     }
 
     /// The number of the question that is meant.
@@ -168,6 +212,9 @@ impl Form {
 
     /// The task of the "my own" form; its world is the upload, if there is one.
     pub(crate) fn own_task_in(&self, upload: Option<UploadId>) -> Result<Task, Malformed> {
+        if self.has_file() {
+            return self.file_task(upload);
+        }
         let names: Vec<&str> = self
             .text("symbols")
             .split(|c: char| c.is_whitespace() || c == ',' || c == ';')

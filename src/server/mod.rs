@@ -20,6 +20,7 @@ mod practice;
 mod recording;
 mod rule;
 mod scene;
+mod standing;
 mod start;
 mod teaching;
 mod upload;

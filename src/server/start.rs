@@ -7,7 +7,7 @@ use axum::response::{IntoResponse, Redirect, Response};
 use super::AppState;
 use super::behaviour::{Chip, chips};
 use super::error::{PageError, WebError};
-use super::forms::Faults;
+use super::forms::{FILE, Faults};
 use super::pages::read_form;
 use super::upload::{self, OwnRule};
 use super::views::{Shell, render};
@@ -152,7 +152,7 @@ pub(crate) async fn begin(
 }
 
 /// The fields of one's own rule; what is about no field is said at the first.
-const FIELDS: [&str; 5] = ["recordings", "title", "symbols", "examples", "media"];
+const FIELDS: [&str; 6] = ["recordings", "title", "symbols", "examples", "media", FILE];
 
 /// The same, saying which example is meant.
 fn numbered(error: WebError) -> WebError {

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use super::class::{self, ClassText};
+use super::prior::{self, PriorText};
 use super::reader::{Faults, Fields, Malformed};
-use super::situation::{self, Files, PriorText, WorldText};
+use super::situation::{self, Files, WorldText};
 use super::symbols::{self, SymbolText};
 use super::universe::Universe;
 
@@ -48,7 +49,7 @@ impl Subject {
         let (symbols, alphabet) = symbols::read(fields, faults)?;
         let told = fields.get("world");
         let world = told.and_then(|value| situation::read_world(value, files, faults));
-        let prior = situation::read_prior(fields, &alphabet, files, faults);
+        let prior = prior::read(fields, &alphabet, files, faults);
         let mut built = None;
         // Without its letters a map would be called wrong for no fault of its own.
         let lettered = !faults.0.iter().any(|fault| fault.path.ends_with(".letter"));

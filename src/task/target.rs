@@ -5,8 +5,9 @@ use serde_json::Value;
 
 use super::automaton::over;
 use super::examples::Example;
+use super::prior::read_rule;
 use super::reader::{Fields, Malformed};
-use super::situation::{self, Files, Situation};
+use super::situation::{Files, Situation};
 use super::universe::{Atom, Concept, ConceptText, Universe};
 use crate::concept::LinearReward;
 use crate::oracle::Target;
@@ -86,7 +87,7 @@ fn read_one(
         return over(target.dfa().clone(), alphabet)
             .map_err(|error| Malformed::new(path, error.to_string()));
     }
-    situation::read_rule(value, path, alphabet, files).map(|(_, dfa)| dfa)
+    read_rule(value, path, alphabet, files).map(|(_, dfa)| dfa)
 }
 
 /// Checks that the target says of the examples what they say, and nothing that is

@@ -24,7 +24,7 @@ pub(crate) use self::pools::Pools;
 pub(crate) use self::spool::Files;
 use super::error::{ApiError, WebError};
 use super::forms::{self, Form};
-use super::{API_LIMIT, AppState, FORM_LIMIT, api};
+use super::{API_LIMIT, AppState, api};
 use crate::session::{Fields, Malformed, SETUP_KEYS, Setup, Task};
 use crate::store::{SessionId, UploadId};
 use crate::world::World;
@@ -45,10 +45,10 @@ const TASK: Texts = Texts {
     most: API_LIMIT,
 };
 
-/// What the start page sends beside files.
+/// What the start page sends beside files; a task file is as long as a task may be.
 const FORM: Texts = Texts {
-    names: &["title", "symbols", "examples"],
-    most: FORM_LIMIT,
+    names: &["title", "symbols", "examples", forms::FILE],
+    most: API_LIMIT,
 };
 
 /// A new upload with the task that it was sent for.
@@ -125,20 +125,8 @@ fn read_task(form: &Form, upload: UploadId) -> Result<(Task, Setup), WebError> {
         let message = "send the task first, so that the recordings can be read over its symbols";
         return Err(Malformed::new("task", message).into());
     }
-    let text = form.text("task").trim_start();
-    let body: Value = if text.starts_with('{') {
-        forms::json_body(text.as_bytes()).map_err(|error| match error {
-            WebError::Unreadable(message) => {
-                Malformed::new("task", message.replace("the body", "this")).into()
-            }
-            other => other,
-        })?
-    } else {
-        Task::toml_content(text).map_err(|fault| {
-            let line = fault.line.unwrap_or(1);
-            Malformed::new("task", format!("line {line}: {}", fault.message))
-        })?
-    };
+    let body = forms::task_content(form.text("task"));
+    let body = body.map_err(|message| Malformed::new("task", message))?;
     // A task file has no key of this name.
     let mut body = match body.get("task") {
         Some(_) => body,
@@ -208,7 +196,7 @@ pub(crate) async fn own_rule(request: Request) -> Result<OwnRule, Request> {
         Ok(alphabet)
     })
     .await;
-    let sent = read.is_some() || !matches!(spool, Ok(None));
+    let sent = read.is_some() || form.has_file() || !matches!(spool, Ok(None));
     let read = match (spool, read) {
         (Err(error), _) => Err(error),
         (Ok(Some(spool)), Some((task, id))) => {
