@@ -350,3 +350,52 @@ async fn the_page_takes_recordings_and_tells_faults_at_their_fields() {
     }
     assert_eq!(site.get(SESSIONS).await.json(), before);
 }
+
+/// The start page takes a task file as it lies in a folder, target and all, in place of
+/// its other fields; what is wrong with it is told at its field.
+#[tokio::test]
+async fn a_task_file_begins_a_session_from_the_start_page() {
+    let site = Site::in_memory();
+    let send = async |file: &str| {
+        let parts = Parts::default().text("title", "").text("symbols", "");
+        let parts = parts.part("file", Some("task.toml"), file.as_bytes());
+        parts.send(&site, "/sessions").await
+    };
+    for (file, kind, title) in [
+        (
+            include_str!("../../examples/tasks/robot-recharge.toml"),
+            "grid",
+            "robot-recharge",
+        ),
+        (include_str!("../../examples/tasks/car.toml"), "", "car"),
+        (r#"{"name": "mine", "symbols": ["a", "b"]}"#, "", "mine"),
+    ] {
+        let session = format!("/api/v1{}", send(file).await.location());
+        let state = site.get(&session).await.json();
+        assert_eq!(state["task"]["name"], title);
+        assert_eq!(state["task"]["world"]["kind"].as_str().unwrap_or(""), kind);
+        assert_eq!(state["task"].get("target"), None);
+    }
+    let begun = site.get("/api/v1/sessions").await.json()["sessions"].clone();
+    for (file, part) in [
+        ("symbols = [", "line 1: this is not TOML"),
+        ("{\"symbols\": ", "this is not JSON"),
+        ("symbols = [\"a\", \"a\"]", "`symbols[1]`"),
+        (
+            "symbols = [\"a\"]\nworld = {kind = \"grid\", map = [\"..\"]}",
+            "`world.map`",
+        ),
+        (
+            "class = {kind = \"finite\", table = \"here.csv\"}",
+            "reads no files",
+        ),
+    ] {
+        let reply = send(file).await;
+        assert_eq!(reply.status, StatusCode::UNPROCESSABLE_ENTITY);
+        let told = reply.text.split("id=\"file-fault\"").nth(1).unwrap();
+        let told = told.split("</span>").next().unwrap().replace("&#34;", "\"");
+        assert!(told.to_lowercase().contains(&part.to_lowercase()), "{told}");
+        assert!(reply.text.contains("Choose the files again"));
+    }
+    assert_eq!(site.get("/api/v1/sessions").await.json()["sessions"], begun);
+}
