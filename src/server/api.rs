@@ -291,7 +291,10 @@ async fn automaton(
         })
         .await?;
     let (hypothesis, task) = shown?;
-    let name = export::file_name(&task, format.extension());
+    let name = match (is_whole, format.extension()) {
+        (true, extension) => export::file_name(&task, extension),
+        (false, extension) => export::file_name(&task, &format!("learned.{extension}")),
+    };
     let body = tokio::task::spawn_blocking(move || export::write(&hypothesis, &task, format))
         .await
         .map_err(WebError::internal)??;

@@ -217,7 +217,7 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
             notice,
             rule: RuleView::of(&session.whole(hypothesis), session),
             counts: session.counts(),
-            files: downloads(id, session.universe()),
+            files: downloads(id, session),
             beyond: (session.beyond()).map(|atom| BehaviourView::of(&atom, session)),
             recorded: matches!(session.world(), Some(World::Pool(_))),
             agreed: session
@@ -230,14 +230,14 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
     }
 }
 
-fn downloads(id: SessionId, universe: &Universe) -> Vec<Download> {
+fn downloads(id: SessionId, session: &Session) -> Vec<Download> {
     let automaton = |&(format, title, about): &(export::Format, _, _)| Download {
         format: format.name(),
         title,
         about,
         href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
     };
-    let rules: Vec<Download> = match universe {
+    let rules: Vec<Download> = match session.universe() {
         Universe::Words { .. } => export::OFFERED.iter().map(automaton).collect(),
         Universe::Monotone(_) | Universe::Finite(_) | Universe::Linear(_) => vec![Download {
             format: "json",
@@ -246,11 +246,17 @@ fn downloads(id: SessionId, universe: &Universe) -> Vec<Download> {
             href: format!("/api/v1/sessions/{id}/concept"),
         }],
     };
+    let part = session.has_prior().then(|| Download {
+        format: "part",
+        title: "Learned part",
+        about: "as JSON, without what was known beforehand",
+        href: format!("/api/v1/sessions/{id}/automaton?part=learned"),
+    });
     let log = Download {
         format: "log",
         title: "Log",
         about: "every question and answer, one a line",
         href: format!("/api/v1/sessions/{id}/log"),
     };
-    rules.into_iter().chain([log]).collect()
+    rules.into_iter().chain(part).chain([log]).collect()
 }

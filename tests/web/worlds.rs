@@ -121,6 +121,8 @@ async fn a_task_is_taught_in_its_world_across_restarts() {
     assert_eq!(prior.whole(&learned).is_equivalent(&whole), Ok(true));
     let explicit = dfa(&export("?part=whole&format=json").await.json());
     assert_eq!(explicit.is_equivalent(&whole), Ok(true));
+    let page = site.get(&session.replace("/api/v1", "")).await.text;
+    assert!(page.contains("id=\"download-part\"") && page.contains("?part=learned"));
     let bad = export("?part=half").await;
     assert_eq!(bad.status, StatusCode::UNPROCESSABLE_ENTITY);
     assert_eq!(bad.json()["error"]["field"], "part");
