@@ -61,7 +61,14 @@ const send = (form) => {
       free();
     }
   });
-  request.send(new FormData(form));
+  const data = new FormData(form);
+  const media = data.getAll("media");
+  data.delete("media");
+  // What systems leave in folders is no part of a recording.
+  for (const file of media.filter((file) => !file.name.startsWith("."))) {
+    data.append("media", file, file.webkitRelativePath || file.name);
+  }
+  request.send(data);
 };
 
 bind();

@@ -351,6 +351,12 @@ fn target(args: &Args, file: Option<&TaskFile>) -> anyhow::Result<Target> {
             if path.extension().is_none() && !path.exists() {
                 return Err(error.into());
             }
+            if !path.exists() {
+                anyhow::bail!(
+                    "{}: cannot read it: there is no such file, and no target is called so",
+                    args.target
+                );
+            }
             Target::automaton(&args.target, &files::read_automaton(path, None)?.dfa)
         }
         (named, _) => named?,

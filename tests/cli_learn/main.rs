@@ -304,8 +304,8 @@ fn bad_input_is_told() {
         ("learn --target tomita:", "give a number from 1 to 7, or 3t"),
         ("learn --target nothing", "there is no target `nothing`"),
         (
-            "learn --target missing.json",
-            "missing.json: cannot read it",
+            "learn --target missing.toml",
+            "missing.toml: cannot read it",
         ),
         ("learn --target cut.json", "cut.json: line 1"),
         ("learn --target labels.jsonl", "expected an automaton"),
