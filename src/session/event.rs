@@ -113,7 +113,8 @@ pub enum ConflictCause {
 }
 
 impl Conflict {
-    fn of(contradiction: &Contradiction) -> Self {
+    /// In the numbers of answers, with the bound where one was met.
+    pub(super) fn of(contradiction: &Contradiction) -> Self {
         let (cause, bound) = match contradiction.cause {
             Cause::Order => (ConflictCause::Order, None),
             Cause::Equality => (ConflictCause::Equality, None),
@@ -262,14 +263,5 @@ impl ReplyText {
                 label: *label,
             },
         })
-    }
-}
-
-impl Event {
-    /// The entry that says that these answers cannot stand together.
-    pub fn conflict(contradiction: &Contradiction) -> Self {
-        Self::Conflict {
-            conflict: Conflict::of(contradiction),
-        }
     }
 }

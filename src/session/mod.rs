@@ -26,6 +26,7 @@ pub use ready::{NAMES as READY_NAMES, offered, ready};
 
 use self::pupil::Pupil;
 use crate::evidence::AnswerId;
+use crate::identify::Contradiction;
 use crate::learner::{Counts, Question, Reply, Round, Step};
 pub use crate::task::{
     Atom, AtomText, Automaton, Concept, ConceptText, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES,
@@ -270,11 +271,22 @@ impl Session {
                 round,
                 hurried,
             },
-            Step::Conflict(contradiction) => Event::conflict(&contradiction),
+            Step::Conflict(contradiction) => Event::Conflict {
+                conflict: self.conflict(&contradiction),
+            },
             Step::Done { hypothesis } => Event::Done {
                 hypothesis: self.universe.rule(&hypothesis),
             },
         })
+    }
+
+    /// A contradiction of this session: only automata have a bound that can be raised.
+    fn conflict(&self, contradiction: &Contradiction) -> Conflict {
+        let conflict = Conflict::of(contradiction);
+        let bound = conflict
+            .bound
+            .filter(|_| self.universe.alphabet().is_some());
+        Conflict { bound, ..conflict }
     }
 
     fn expect_thinking(&self) -> Result<(), String> {

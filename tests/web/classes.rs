@@ -438,3 +438,43 @@ async fn the_practice_question_is_explained_and_not_kept() {
     let none = format!("{}/practice", without.replace("/api/v1", ""));
     assert_eq!(site.get(&none).await.status, StatusCode::NOT_FOUND);
 }
+
+/// Answers that no limits fit are a conflict, which more states would not resolve:
+/// there are none.
+#[tokio::test]
+async fn limits_that_contradict_each_other_are_mended_by_an_answer() {
+    let site = Site::in_memory();
+    let task = json!({
+        "class": {"kind": "monotone", "ticks": 3, "axes": [{"name": "time", "best": 0, "worst": 2}]},
+    });
+    let body = json!({"task": task, "strategy": "membership"});
+    let session = create(&site, body).await;
+    let mut question = site.get(&format!("{session}/question")).await.json();
+    // The worst is accepted, and whatever else is asked is not, nor is the best.
+    while question["kind"] != "conflict" {
+        let number = &question["number"];
+        let reply = match question["kind"].as_str().unwrap() {
+            "membership" => {
+                let answer = if question["point"] == json!([2.0]) {
+                    "accept"
+                } else {
+                    "reject"
+                };
+                json!({"question": number, "answer": answer})
+            }
+            "equivalence" => {
+                let all = question["hypothesis"]["limits"] == json!([2.0]);
+                let point = if all { [0] } else { [2] };
+                json!({"question": number, "answer": "counterexample", "point": point, "label": !all})
+            }
+            other => panic!("{other}: {question}"),
+        };
+        let replied = site.post(&format!("{session}/answers"), reply).await;
+        assert_eq!(replied.status, StatusCode::OK, "{}", replied.text);
+        question = replied.json();
+    }
+    assert_eq!(question.get("bound"), None, "{question}");
+    let page = site.get(&session.replace("/api/v1", "")).await.text;
+    assert!(page.contains("No rule of the kind that this task learns fits"));
+    assert!(!page.contains("more states"), "{page}");
+}

@@ -210,7 +210,8 @@ impl LinearRewards {
     /// The reward of a parameter: Eq. 5.7 the other way round.
     pub fn reward(&self, parameter: &Point) -> LinearReward {
         let mut weights: Vec<f64> = parameter.coordinates().map(|at| 2.0 * at - 1.0).collect();
-        let threshold = -weights.pop().unwrap_or(0.0) * self.bound();
+        // Not its negation, which has a zero below zero.
+        let threshold = 0.0 - weights.pop().unwrap_or(0.0) * self.bound();
         LinearReward { weights, threshold }
     }
 }
