@@ -55,6 +55,7 @@ const HOPELESS: f64 = 6.0;
 const LARGEST: usize = 40;
 
 /// The chains, and what they have heard.
+#[derive(Clone)]
 pub(crate) struct Particles {
     symbols: usize,
     seed: u64,
@@ -73,6 +74,7 @@ pub(crate) struct Particles {
 }
 
 /// What goes on from one answer to the next.
+#[derive(Clone)]
 struct Stage {
     places: Places,
     /// The size that the guide knows to be needed.
