@@ -4,6 +4,7 @@
 //! through the layers of [`app`], a handler in `api` or `pages`, and
 //! `teaching`, which is the only way to a session.
 
+mod ahead;
 mod api;
 mod assets;
 mod behaviour;
