@@ -91,7 +91,7 @@ pub fn app(state: AppState) -> Router {
         .layer(DefaultBodyLimit::max(API_LIMIT));
     let new_session = Router::new().route("/sessions", post(start::begin));
     let pages = pages::routes()
-        .route("/static/{name}", get(assets::get))
+        .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))
         .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))
