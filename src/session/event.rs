@@ -179,7 +179,12 @@ pub enum ReplyText {
     /// The two cannot be compared.
     Incomparable,
     /// The rule is right.
-    Correct,
+    Correct {
+        /// How many behaviours of its sheet were looked at and found to be treated
+        /// rightly: all of them, if that is said. Older logs say nothing of it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        looked: Option<u32>,
+    },
     /// No answer.
     Skip,
     /// The rule is wrong about this behaviour.
@@ -240,7 +245,7 @@ impl ReplyText {
             Reply::Compared(Comparison::Second) => Self::Second,
             Reply::Compared(Comparison::Equal) => Self::Equal,
             Reply::Compared(Comparison::Incomparable) => Self::Incomparable,
-            Reply::Correct => Self::Correct,
+            Reply::Correct => Self::Correct { looked: None },
             Reply::Skip => Self::Skip,
             Reply::Counterexample { atom, label } => Self::Counterexample {
                 atom: universe.text(atom),
@@ -262,7 +267,7 @@ impl ReplyText {
             Self::Second => Reply::Compared(Comparison::Second),
             Self::Equal => Reply::Compared(Comparison::Equal),
             Self::Incomparable => Reply::Compared(Comparison::Incomparable),
-            Self::Correct => Reply::Correct,
+            Self::Correct { .. } => Reply::Correct,
             Self::Skip => Reply::Skip,
             Self::Counterexample { atom, label } => Reply::Counterexample {
                 atom: universe.parse(atom)?,

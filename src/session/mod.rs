@@ -15,6 +15,7 @@ mod explain;
 mod pupil;
 mod ready;
 mod rule;
+mod samples;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -23,6 +24,7 @@ pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
 pub use ready::{NAMES as READY_NAMES, offered, ready};
+pub use samples::{Claim, RISK, SHEET, Samples};
 
 use self::pupil::Pupil;
 use crate::evidence::AnswerId;
@@ -55,6 +57,9 @@ pub struct Standing {
     pub number: u32,
     /// The answer.
     pub reply: Reply<Atom>,
+    /// Of an agreement, how many behaviours beside the rule were looked at; none
+    /// where that was not said.
+    pub looked: Option<u32>,
     /// What the learner did next, once it has; none for a mended answer.
     then: Option<Position>,
 }
@@ -213,11 +218,16 @@ impl Session {
                 if self.position != Position::Asking(*number) {
                     return Err(format!("question {number} is not open"));
                 }
+                let looked = match reply {
+                    ReplyText::Correct { looked } => *looked,
+                    _ => None,
+                };
                 let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 self.record(*number, &reply)?;
                 self.standing.push(Standing {
                     number: *number,
                     reply,
+                    looked,
                     then: None,
                 });
                 self.depart(Some(*number));
@@ -234,6 +244,7 @@ impl Session {
                     return Err(format!("question {number} has no standing answer"));
                 };
                 standing.reply = reply;
+                standing.looked = None;
                 standing.then = None;
                 self.rebuild()?;
                 self.depart(None);

@@ -1,5 +1,8 @@
 //! The learner of a session, whatever class it learns.
 
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
 use super::Setup;
 use crate::concept::{ConceptClass, DfaClass};
 use crate::evidence::AnswerId;
@@ -32,6 +35,16 @@ pub(super) trait Pupil: Send {
 
     /// What nothing that can be shown tells about this hypothesis.
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom>;
+
+    /// Independent draws by which this hypothesis can be checked, and from what;
+    /// from a stream of the seed that is this question's alone.
+    fn draw(
+        &self,
+        hypothesis: &Concept,
+        count: usize,
+        seed: u64,
+        question: u64,
+    ) -> Option<(Vec<Atom>, String)>;
 }
 
 /// A learner that was told no answer yet.
@@ -144,6 +157,22 @@ where
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom> {
         let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
         self.class().beyond(&hypothesis).map(Atom::from)
+    }
+
+    fn draw(
+        &self,
+        hypothesis: &Concept,
+        count: usize,
+        seed: u64,
+        question: u64,
+    ) -> Option<(Vec<Atom>, String)> {
+        let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        // The learner draws from streams that lack one of the two highest bits.
+        random.set_stream(question | 0b11 << 62);
+        let drawn = self.class().draw(&hypothesis, count, &mut random);
+        let atoms = drawn.into_iter().map(Atom::from).collect();
+        Some((atoms, self.class().drawn_from(&hypothesis)))
     }
 }
 
