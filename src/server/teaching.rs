@@ -197,6 +197,19 @@ impl Teaching {
         }
     }
 
+    /// What `view` shows of every answer that was tried out on the session as it
+    /// stands with so many entries; those still to be tried are waited for, within
+    /// `patience`.
+    pub(crate) async fn survey<T>(
+        &self,
+        id: SessionId,
+        entries: u64,
+        patience: Duration,
+        view: impl Fn(&Trial) -> T,
+    ) -> Vec<T> {
+        self.foresight.survey(id, entries, patience, view).await
+    }
+
     /// A session's log, as it lies in the store.
     pub(crate) async fn log(&self, id: SessionId) -> Result<Vec<Entry>, WebError> {
         let store = self.store();

@@ -7,6 +7,7 @@ use axum::response::{Html, IntoResponse, Response};
 
 use super::assets;
 use super::error::WebError;
+use super::outlook::LeftView;
 use crate::session::Session;
 
 /// What every page has around its content.
@@ -46,6 +47,8 @@ pub(crate) struct Bar {
     pub(crate) guidelines: Vec<String>,
     /// Whether there is a question to practise with.
     pub(crate) practice: bool,
+    /// What is left to be learned, while a question is open.
+    pub(crate) left: Option<LeftView>,
     /// The last standing answer.
     pub(crate) undo: Option<u32>,
 }
@@ -60,6 +63,7 @@ impl Bar {
             answered: (counts.membership + counts.comparison + counts.equivalence) as usize,
             guidelines: paragraphs(&task.guidelines),
             practice: task.practice.is_some(),
+            left: LeftView::of(session),
             undo: session.standing().last().map(|s| s.number),
         }
     }
