@@ -4,11 +4,12 @@
 import * as builder from "./builder.js";
 import * as frames from "./frames.js";
 import * as keys from "./keys.js";
+import * as live from "./live.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as upload from "./upload.js";
 
-const MODULES = [keys, swap, times, builder, frames, upload];
+const MODULES = [keys, swap, live, times, builder, frames, upload];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

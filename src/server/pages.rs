@@ -17,7 +17,7 @@ use super::forms::{Faults, Form};
 use super::past::PastView;
 use super::standing::{Typed, page};
 use super::views::{Bar, Shell, render};
-use super::{export, media, outlook, practice, start};
+use super::{export, live, media, outlook, practice, start};
 use crate::session::{Concept, Decision, Session};
 use crate::store::SessionId;
 
@@ -38,6 +38,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/history", get(history))
         .route("/sessions/{id}/why", get(outlook::why))
+        .route("/sessions/{id}/live", get(live::live))
         .route(
             "/sessions/{id}/practice",
             get(practice::show).post(practice::answer),

@@ -43,6 +43,8 @@ pub(crate) struct Bar {
     pub(crate) id: String,
     pub(crate) title: String,
     pub(crate) answered: usize,
+    /// The entries of its log: another page shows the same if they are as many.
+    pub(crate) entries: u64,
     /// Paragraph by paragraph.
     pub(crate) guidelines: Vec<String>,
     /// Whether there is a question to practise with.
@@ -61,6 +63,7 @@ impl Bar {
             id,
             title: task.title.clone(),
             answered: (counts.membership + counts.comparison + counts.equivalence) as usize,
+            entries: session.entries(),
             guidelines: paragraphs(&task.guidelines),
             practice: task.practice.is_some(),
             left: LeftView::of(session),
