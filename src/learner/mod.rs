@@ -175,6 +175,16 @@ impl<C: ConceptClass> Learner<C> {
         self.doubts.as_ref()
     }
 
+    /// Whether the answer to a question that was put some time ago may still teach
+    /// something. Equivalence queries are put anew after every answer.
+    pub fn wants(&self, question: &Question<C::Atom, C::Concept>) -> bool {
+        match question {
+            Question::Membership { atom } => self.evidence.may_judge(atom),
+            Question::Comparison { first, second } => self.evidence.may_compare(first, second),
+            Question::Equivalence { .. } => false,
+        }
+    }
+
     /// What was left, and what the answers would tell, when the last
     /// [`Self::next`] put its question; none where it put none, and where its
     /// budget ended before the concepts were known.

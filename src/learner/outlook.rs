@@ -56,11 +56,16 @@ impl Expected {
     /// tells how often others are within.
     fn of(bits: f64) -> Self {
         Self {
-            mean: 1.5 + 1.6 * bits,
-            low: bits.max(1.0),
-            high: 5.0 + 2.0 * bits,
+            mean: rounded(1.5 + 1.6 * bits),
+            low: rounded(bits.max(1.0)),
+            high: rounded(5.0 + 2.0 * bits),
         }
     }
+}
+
+/// To a hundredth: no more of it means anything.
+fn rounded(number: f64) -> f64 {
+    (number * 100.0).round() / 100.0
 }
 
 /// What an answer would rule out.
@@ -189,7 +194,7 @@ impl<C> Weighed<'_, C> {
         Left {
             concepts: self.concepts.len(),
             exact: self.exact,
-            bits,
+            bits: rounded(bits),
             questions: strategy.has_posterior().then(|| Expected::of(bits)),
         }
     }

@@ -81,7 +81,10 @@ impl Foresight {
         let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
         tokio::spawn(async move {
             for event in foreseen {
-                let turn = (spare.acquire().await, Arc::clone(&permits).acquire_owned().await);
+                let turn = (
+                    spare.acquire().await,
+                    Arc::clone(&permits).acquire_owned().await,
+                );
                 let ((Ok(_spare), Ok(permit)), false) = (turn, ahead.stale.load(Ordering::Relaxed))
                 else {
                     break;

@@ -103,6 +103,11 @@ impl WebError {
                 Refusal::NothingToUndo => "nothing_to_undo",
                 Refusal::NoBound => "no_bound",
                 Refusal::BadBound { .. } => "bad_bound",
+                Refusal::BadAnswers => "bad_answers",
+                Refusal::BadName => "bad_name",
+                Refusal::TooManyPeople => "too_many_people",
+                Refusal::NoPerson => "not_invited",
+                Refusal::OwnersAnswer => "owners_answer",
             },
             Self::Malformed(_) => "malformed",
             Self::Unreadable(_) => "unreadable_body",
@@ -130,7 +135,12 @@ impl WebError {
                 Refusal::Infeasible { .. } | Refusal::Settled { .. } => Some("word"),
                 Refusal::Looked { .. } => Some("looked"),
                 Refusal::BadBound { .. } => Some("max_states"),
-                Refusal::NothingToUndo | Refusal::NoBound => None,
+                Refusal::BadAnswers => Some("answers"),
+                Refusal::BadName | Refusal::TooManyPeople => Some("name"),
+                Refusal::NothingToUndo
+                | Refusal::NoBound
+                | Refusal::NoPerson
+                | Refusal::OwnersAnswer => None,
             },
             Self::UploadTooLarge => Some(RECORDINGS),
             _ => None,

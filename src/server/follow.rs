@@ -80,8 +80,9 @@ impl Follow {
             found.map(|follow| follow.text.clone())
         };
         past.withdrawn = find(None);
-        let found: Vec<Option<String>> =
-            (past.others.iter()).map(|choice| find(Some(choice.value))).collect();
+        let found: Vec<Option<String>> = (past.others.iter())
+            .map(|choice| find(Some(choice.value)))
+            .collect();
         for (choice, follows) in past.others.iter_mut().zip(found) {
             choice.follows = follows;
         }

@@ -27,7 +27,9 @@ impl Live {
     /// News of this session, which has so many entries now; the first at once.
     pub(crate) fn follow(&self, id: SessionId, entries: u64) -> watch::Receiver<u64> {
         let mut sessions = self.sessions();
-        let news = sessions.entry(id).or_insert_with(|| watch::Sender::new(entries));
+        let news = sessions
+            .entry(id)
+            .or_insert_with(|| watch::Sender::new(entries));
         news.send_if_modified(|known| set(known, entries));
         news.subscribe()
     }

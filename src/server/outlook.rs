@@ -112,7 +112,10 @@ impl Costs {
             _ => f64::from(count) * cost,
         };
         let comparisons = spent(counts.comparison, setup.comparison_cost);
-        let judgements = spent(counts.membership + counts.conformance, setup.membership_cost);
+        let judgements = spent(
+            counts.membership + counts.conformance,
+            setup.membership_cost,
+        );
         let text = |cost: f64| format!("{}", (cost * 100.0).round() / 100.0);
         Self {
             comparisons: text(comparisons),

@@ -119,5 +119,7 @@ pub(crate) fn value(reply: &ReplyText) -> Option<&'static str> {
         _ => return None,
     };
     let mut choices = JUDGEMENTS.iter().chain(&COMPARISONS);
-    choices.find(|(_, _, choice)| *choice == reply).map(|(value, _, _)| *value)
+    choices
+        .find(|(_, _, choice)| *choice == reply)
+        .map(|(value, _, _)| *value)
 }

@@ -4,6 +4,7 @@
 use automata::Word;
 
 use super::event::{Event, ReplyText};
+use super::panel::{MAX_ANSWERS, MAX_NAME, MAX_PEOPLE};
 use super::{Position, Session};
 use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
@@ -101,6 +102,21 @@ pub enum Refusal {
     /// There is nothing to take back.
     #[error("there is no answer to take back yet")]
     NothingToUndo,
+    /// A question wants no so many answers.
+    #[error("a question wants from 1 to {MAX_ANSWERS} answers")]
+    BadAnswers,
+    /// Nobody is called that.
+    #[error("give a name of 1 to {MAX_NAME} characters")]
+    BadName,
+    /// There are enough people.
+    #[error("a session has at most {MAX_PEOPLE} people: begin another one of the same task")]
+    TooManyPeople,
+    /// The person does not answer here, or not any more.
+    #[error("this link does not answer here any more: ask whoever sent it for a new one")]
+    NoPerson,
+    /// The answer needs the rule on the table.
+    #[error("only the owner of the session says whether a rule is right")]
+    OwnersAnswer,
     /// There is no bound on states.
     #[error(
         "this task learns no automaton, so it has no bound on states: withdraw or change an answer"
@@ -137,7 +153,7 @@ impl Session {
     ///
     /// If the question is not open, or the reply does not fit it.
     pub fn answer(&self, number: u32, reply: &Reply<Atom>) -> Result<Decision, Refusal> {
-        if *self.position() != Position::Asking(number) {
+        if !self.is_open(number) {
             return match self.answer_to(number) {
                 Some(standing) if standing.reply == *reply => Ok(Decision::Already(
                     standing
@@ -241,7 +257,10 @@ impl Session {
                 answered.collect()
             }
             Position::Conflict(conflict) => {
-                let mended = conflict.answers.iter().flat_map(|&number| self.mended(number));
+                let mended = conflict
+                    .answers
+                    .iter()
+                    .flat_map(|&number| self.mended(number));
                 mended.collect()
             }
         }
@@ -265,7 +284,7 @@ impl Session {
     }
 
     /// Whether a reply fits the question of this number, which was asked.
-    fn check_fit(&self, number: u32, reply: &Reply<Atom>) -> Result<(), Refusal> {
+    pub(super) fn check_fit(&self, number: u32, reply: &Reply<Atom>) -> Result<(), Refusal> {
         let Some(asked) = self.asked(number) else {
             return Err(self.not_open(number));
         };
@@ -348,7 +367,7 @@ impl Session {
         }
     }
 
-    fn not_open(&self, number: u32) -> Refusal {
+    pub(super) fn not_open(&self, number: u32) -> Refusal {
         let now = self.describe_now();
         if self.asked(number).is_some() {
             Refusal::Closed { number, now }
@@ -357,7 +376,7 @@ impl Session {
         }
     }
 
-    fn not_standing(&self, number: u32) -> Refusal {
+    pub(super) fn not_standing(&self, number: u32) -> Refusal {
         if self.asked(number).is_none() {
             return self.not_open(number);
         }

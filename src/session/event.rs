@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::config::Setup;
+use super::panel::Terms;
 use crate::evidence::Comparison;
 use crate::identify::{Cause, Contradiction};
 use crate::learner::{Left, Question, Removed, Reply, Round};
@@ -66,6 +67,54 @@ pub enum Event {
         /// The question's number.
         number: u32,
         /// The new answer.
+        #[serde(flatten)]
+        reply: ReplyText,
+    },
+    /// What several people are to answer, and how that becomes one answer.
+    Terms {
+        /// What the owner chose.
+        #[serde(flatten)]
+        terms: Terms,
+    },
+    /// Somebody was invited to answer.
+    Invited {
+        /// Their number, from 1.
+        person: u32,
+        /// As the owner calls them.
+        name: String,
+    },
+    /// Somebody is not to answer any more; what they said stays.
+    Dismissed {
+        /// Their number.
+        person: u32,
+    },
+    /// One of several people answered an open question.
+    Said {
+        /// The question's number.
+        number: u32,
+        /// The person's.
+        person: u32,
+        /// The answer.
+        #[serde(flatten)]
+        reply: ReplyText,
+        /// How long it took in milliseconds, as the person's browser says.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        took: Option<u64>,
+    },
+    /// One of several people took their answer back.
+    Unsaid {
+        /// The question's number.
+        number: u32,
+        /// The person's.
+        person: u32,
+    },
+    /// Somebody was asked once more what they had answered, and this was said.
+    Repeated {
+        /// The question's number.
+        number: u32,
+        /// The person's.
+        person: u32,
+        /// The answer, to the question as it was asked the first time.
         #[serde(flatten)]
         reply: ReplyText,
     },

@@ -8,10 +8,14 @@
 //! → (append) → [`Session::apply`]: what the learner makes of an answer is an
 //! entry of its own, so that it is computed once and shown for ever after.
 
+mod agreement;
 mod config;
 mod decide;
 mod event;
 mod explain;
+mod fold;
+mod panel;
+mod people;
 mod pupil;
 mod ready;
 mod rule;
@@ -20,14 +24,17 @@ mod samples;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+pub use agreement::Agreement;
 pub use config::{DEFAULT_BUDGET, KEYS as SETUP_KEYS, Setup};
 pub use decide::{Decision, Refusal};
 pub use event::{Conflict, ConflictCause, Event, LOG_VERSION, QuestionText, ReplyText};
+pub use panel::{
+    MAX_ANSWERS, MAX_NAME, MAX_PEOPLE, Opinion, Panel, Person, Pooling, Record, Terms,
+};
 pub use ready::{NAMES as READY_NAMES, offered, ready};
 pub use samples::{Claim, RISK, SHEET, Samples};
 
 use self::pupil::Pupil;
-use crate::evidence::AnswerId;
 use crate::identify::Contradiction;
 use crate::learner::{Counts, Left, Question, Removed, Reply, Round, Step};
 pub use crate::task::{
@@ -95,6 +102,9 @@ pub struct Session {
     universe: Universe,
     learner: Box<dyn Pupil>,
     asked: BTreeMap<u32, Asked>,
+    /// The questions that can be answered: one, unless several people do.
+    open: BTreeSet<u32>,
+    panel: Panel,
     standing: Vec<Standing>,
     withdrawn: BTreeSet<u32>,
     position: Position,
@@ -165,6 +175,8 @@ impl Session {
             task,
             setup,
             asked: BTreeMap::new(),
+            open: BTreeSet::new(),
+            panel: Panel::default(),
             standing: Vec::new(),
             withdrawn: BTreeSet::new(),
             position: Position::Thinking,
@@ -185,90 +197,6 @@ impl Session {
         })?;
         self.entries += 1;
         Ok(())
-    }
-
-    fn fold(&mut self, event: &Event) -> Result<(), String> {
-        match event {
-            Event::Created { .. } => Err("the session is created a second time".to_owned()),
-            Event::Asked {
-                number,
-                question,
-                round,
-                hurried,
-                left,
-                removed,
-            } => {
-                self.expect_thinking()?;
-                if *number != self.next_number() {
-                    return Err(format!("question {number} comes out of turn"));
-                }
-                let question = question.read(&self.universe).map_err(|e| e.to_string())?;
-                let asked = Asked {
-                    question,
-                    hurried: *hurried,
-                    left: *left,
-                    removed: removed.clone(),
-                    round: round.clone(),
-                };
-                self.asked.insert(*number, asked);
-                self.arrive(Position::Asking(*number));
-                Ok(())
-            }
-            Event::Answered { number, reply } => {
-                if self.position != Position::Asking(*number) {
-                    return Err(format!("question {number} is not open"));
-                }
-                let looked = match reply {
-                    ReplyText::Correct { looked } => *looked,
-                    _ => None,
-                };
-                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
-                self.record(*number, &reply)?;
-                self.standing.push(Standing {
-                    number: *number,
-                    reply,
-                    looked,
-                    then: None,
-                });
-                self.depart(Some(*number));
-                Ok(())
-            }
-            Event::Retracted { number } => {
-                self.withdraw(*number)?;
-                self.depart(None);
-                Ok(())
-            }
-            Event::Changed { number, reply } => {
-                let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
-                let Some(standing) = self.standing.iter_mut().find(|s| s.number == *number) else {
-                    return Err(format!("question {number} has no standing answer"));
-                };
-                standing.reply = reply;
-                standing.looked = None;
-                standing.then = None;
-                self.rebuild()?;
-                self.depart(None);
-                Ok(())
-            }
-            Event::Enlarged { max_states } => {
-                self.task.max_states = *max_states;
-                self.rebuild()?;
-                self.depart(None);
-                Ok(())
-            }
-            Event::Conflict { conflict } => {
-                self.expect_thinking()?;
-                self.arrive(Position::Conflict(conflict.clone()));
-                Ok(())
-            }
-            Event::Done { hypothesis } => {
-                self.expect_thinking()?;
-                let hypothesis = self.universe.parse_rule(hypothesis);
-                let hypothesis = hypothesis.map_err(|e| e.to_string())?;
-                self.arrive(Position::Done(hypothesis));
-                Ok(())
-            }
-        }
     }
 
     /// What the learner makes of the standing answers: the entry to append
@@ -316,6 +244,8 @@ impl Session {
             universe: self.universe.clone(),
             learner: self.learner.fork(),
             asked: self.asked.clone(),
+            open: self.open.clone(),
+            panel: self.panel.clone(),
             standing: self.standing.clone(),
             withdrawn: self.withdrawn.clone(),
             position: self.position.clone(),
@@ -342,67 +272,6 @@ impl Session {
             .bound
             .filter(|_| self.universe.alphabet().is_some());
         Conflict { bound, ..conflict }
-    }
-
-    fn expect_thinking(&self) -> Result<(), String> {
-        match self.position {
-            Position::Thinking => Ok(()),
-            _ => Err("nothing led to it".to_owned()),
-        }
-    }
-
-    /// The learner has thought; the answer that led here remembers where to.
-    fn arrive(&mut self, position: Position) {
-        if let Some(number) = self.awaiting.take()
-            && let Some(standing) = self.standing.iter_mut().find(|s| s.number == number)
-        {
-            standing.then = Some(position.clone());
-        }
-        self.position = position;
-    }
-
-    /// Something is new; the learner has to think.
-    fn depart(&mut self, answer: Option<u32>) {
-        self.position = Position::Thinking;
-        self.awaiting = answer;
-    }
-
-    fn record(&mut self, number: u32, reply: &Reply<Atom>) -> Result<(), String> {
-        let Some(asked) = self.asked.get(&number) else {
-            return Err(format!("question {number} was never asked"));
-        };
-        self.learner.record(
-            AnswerId(number),
-            asked.question.clone(),
-            asked.round.clone(),
-            reply.clone(),
-        )
-    }
-
-    fn withdraw(&mut self, number: u32) -> Result<(), String> {
-        let Some(place) = self.standing.iter().position(|s| s.number == number) else {
-            return Err(format!("question {number} has no standing answer"));
-        };
-        self.standing.remove(place);
-        self.withdrawn.insert(number);
-        if self.learner.retract(AnswerId(number)) {
-            Ok(())
-        } else {
-            Err(format!("the learner has no answer {number} to withdraw"))
-        }
-    }
-
-    /// A learner that was told the standing answers as they are now, in order.
-    fn rebuild(&mut self) -> Result<(), String> {
-        self.learner = pupil::new(&self.task, &self.universe, &self.setup)?;
-        let replies: Vec<_> = self
-            .standing
-            .iter()
-            .map(|s| (s.number, s.reply.clone()))
-            .collect();
-        replies
-            .into_iter()
-            .try_for_each(|(number, reply)| self.record(number, &reply))
     }
 
     fn next_number(&self) -> u32 {

@@ -27,6 +27,10 @@ pub(super) trait Pupil: Send {
 
     fn counts(&self) -> Counts;
 
+    /// Whether the answer to this question may still teach something; never to an
+    /// equivalence query, since what was said last may have changed the hypothesis.
+    fn wants(&self, question: &Question<Atom, Concept>) -> bool;
+
     /// What was left as the last question was put, if it was by `next`.
     fn outlook(&self) -> Option<Outlook<Concept>>;
 
@@ -139,6 +143,10 @@ where
 
     fn counts(&self) -> Counts {
         Learner::counts(self)
+    }
+
+    fn wants(&self, question: &Question<Atom, Concept>) -> bool {
+        inward(question.clone()).is_some_and(|question| Learner::wants(self, &question))
     }
 
     fn outlook(&self) -> Option<Outlook<Concept>> {

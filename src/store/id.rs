@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use sha2::{Digest as _, Sha256};
+
 /// A name of 128 random bits, written as 32 hexadecimal digits.
 macro_rules! random_name {
     ($(#[$about:meta])* $name:ident, $(#[$error:meta])* $none:ident) => {
@@ -64,6 +66,29 @@ random_name!(
     #[error("an upload's name is 32 hexadecimal digits")]
     NoUploadId
 );
+
+random_name!(
+    /// The key with which an invited person answers: 128 random bits, written as 32
+    /// hexadecimal digits.
+    InviteKey,
+    /// A text that is no such key.
+    #[error("an invitation's key is 32 hexadecimal digits")]
+    NoInviteKey
+);
+
+impl InviteKey {
+    /// What is kept of it: nobody who reads the database can answer with that. A
+    /// key is as random as can be, so that a plain digest cannot be guessed back.
+    pub fn digest(&self) -> String {
+        use std::fmt::Write as _;
+        let mut text = String::with_capacity(64);
+        for byte in Sha256::digest(self.0) {
+            // Writing to a string never fails.
+            let _ = write!(text, "{byte:02x}");
+        }
+        text
+    }
+}
 
 fn read(text: &str) -> Option<[u8; 16]> {
     let digits = |c: char| matches!(c, '0'..='9' | 'a'..='f');

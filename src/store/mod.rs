@@ -1,8 +1,8 @@
 //! Where the logs of sessions last, and the files that were uploaded for them.
 //!
 //! A [`Store`] appends entries to logs and reads them back. An entry is a text
-//! to it: it must not know the learner, nor what an entry means; and a file is
-//! bytes with a name and a type.
+//! to it: it must not know the learner, nor what an entry means; a file is bytes
+//! with a name and a type; and a person is a number that a key opens.
 
 mod files;
 mod id;
@@ -11,7 +11,7 @@ mod sqlite;
 
 use std::io::Read;
 
-pub use id::{NoSessionId, NoUploadId, SessionId, UploadId};
+pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
 pub use sqlite::Sqlite;
 
 /// The bytes of a file lie in pieces of this size, the last one shorter.
@@ -173,6 +173,21 @@ pub trait Store: Send + Sync {
         upload: &UploadId,
         files: Option<&mut dyn Iterator<Item = NewFile<'_>>>,
     ) -> Result<(), StoreError>;
+
+    /// Lets whoever has this key answer as that person of the session, and nobody
+    /// who has an earlier one. Only the key's digest is kept.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails, or there is no such session.
+    fn invite(&self, key: &InviteKey, session: &SessionId, person: u32) -> Result<(), StoreError>;
+
+    /// Who answers with this key.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError>;
 
     /// The upload that the session was created with, if it was with one.
     ///

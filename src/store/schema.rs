@@ -7,7 +7,7 @@ use super::StoreError;
 /// "MemR": says in the file's header whose it is.
 const APPLICATION: i64 = 0x4d65_6d52;
 /// The schema's version, in the file's header.
-const VERSION: i64 = 2;
+const VERSION: i64 = 3;
 
 /// What makes each version out of the one before, from version 1. A step that
 /// was released is never changed.
@@ -48,6 +48,16 @@ CREATE TABLE chunks (
     FOREIGN KEY (upload, file) REFERENCES files (upload, number)
 ) STRICT;
 ALTER TABLE sessions ADD COLUMN upload TEXT REFERENCES uploads (id);
+",
+    // A person has one link at a time; of the link only its digest is kept.
+    "
+CREATE TABLE invites (
+    session TEXT NOT NULL REFERENCES sessions (id),
+    person INTEGER NOT NULL CHECK (person > 0),
+    digest TEXT NOT NULL UNIQUE,
+    at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+    PRIMARY KEY (session, person)
+) STRICT, WITHOUT ROWID;
 ",
 ];
 

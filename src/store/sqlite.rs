@@ -6,8 +6,12 @@ use std::time::Duration;
 
 use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior, params};
 
+use rusqlite::OptionalExtension;
+
 use super::schema::{bring_up_to_date, check_header};
-use super::{Entry, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files};
+use super::{
+    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files,
+};
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.
@@ -182,6 +186,32 @@ impl Store for Sqlite {
         )?;
         transaction.commit()?;
         Ok(())
+    }
+
+    fn invite(&self, key: &InviteKey, session: &SessionId, person: u32) -> Result<(), StoreError> {
+        self.connection()
+            .prepare_cached(
+                "INSERT INTO invites (session, person, digest) VALUES (?1, ?2, ?3)
+                 ON CONFLICT (session, person) DO UPDATE SET digest = excluded.digest,
+                     at = strftime('%Y-%m-%dT%H:%M:%fZ', 'now')",
+            )?
+            .execute(params![session.to_string(), person, key.digest()])?;
+        Ok(())
+    }
+
+    fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError> {
+        let connection = self.connection();
+        let mut statement =
+            connection.prepare_cached("SELECT session, person FROM invites WHERE digest = ?1")?;
+        let found: Option<(String, u32)> = statement
+            .query_row([key.digest()], |row| Ok((row.get(0)?, row.get(1)?)))
+            .optional()?;
+        found
+            .map(|(id, person)| match id.parse() {
+                Ok(session) => Ok((session, person)),
+                Err(_) => Err(rusqlite::Error::InvalidColumnName(id).into()),
+            })
+            .transpose()
     }
 
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {

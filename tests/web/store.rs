@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-use memrep::store::{CHUNK, NewFile, SessionId, Sqlite, Store, StoreError, UploadId};
+use memrep::store::{CHUNK, InviteKey, NewFile, SessionId, Sqlite, Store, StoreError, UploadId};
 
 fn id() -> SessionId {
     SessionId::random().unwrap()
@@ -86,18 +86,25 @@ fn of_writers_that_saw_the_same_one_succeeds() {
     assert_eq!(stores[1].read(&session).unwrap().len(), 11);
 }
 
-/// A file that version 1 wrote is brought up to date, keeps its sessions, and takes
-/// uploads.
+/// A file that an earlier version wrote is brought up to date, keeps its sessions, and
+/// takes uploads and invitations.
 #[test]
-fn files_of_version_1_are_brought_up_to_date() {
+fn files_of_earlier_versions_are_brought_up_to_date() {
+    let version_1: &[u8] = include_bytes!("fixtures/version-1.db");
+    let version_2: &[u8] = include_bytes!("fixtures/version-2.db");
+    brought_up_to_date(version_1, "49e2833f13f9b31ccbe73e5bdd7afc88", 10);
+    brought_up_to_date(version_2, "c364a5ceb7de0076eb77565e5d87f8d9", 6);
+}
+
+fn brought_up_to_date(file_of_then: &[u8], session: &str, entries_then: usize) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.db");
-    std::fs::write(&path, include_bytes!("fixtures/version-1.db")).unwrap();
-    let old: SessionId = "49e2833f13f9b31ccbe73e5bdd7afc88".parse().unwrap();
+    std::fs::write(&path, file_of_then).unwrap();
+    let old: SessionId = session.parse().unwrap();
     for _ in 0..2 {
         let store = Sqlite::open(&path).unwrap();
         let entries = store.read(&old).unwrap();
-        assert_eq!(entries.len(), 10);
+        assert_eq!(entries.len(), entries_then);
         assert!(entries[0].body.contains("created"), "{}", entries[0].body);
         assert_eq!(store.upload_of(&old).unwrap(), None);
         assert_eq!(store.list(5).unwrap()[0].id, old);
@@ -114,7 +121,45 @@ fn files_of_version_1_are_brought_up_to_date() {
         .unwrap()
         .pragma_query_value(None, "user_version", |row| row.get(0))
         .unwrap();
-    assert_eq!(version, 2);
+    assert_eq!(version, 3);
+    let key = InviteKey::random().unwrap();
+    store.invite(&key, &old, 1).unwrap();
+    assert_eq!(store.invited(&key).unwrap(), Some((old, 1)));
+}
+
+/// A key opens one person, the last one given; and the file does not have it.
+#[test]
+fn an_invitation_is_a_key_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.db");
+    let store = Sqlite::open(&path).unwrap();
+    let (session, other) = (id(), id());
+    store.append(&session, 0, "first").unwrap();
+    let keys: Vec<InviteKey> = (0..3).map(|_| InviteKey::random().unwrap()).collect();
+    assert!(
+        store.invite(&keys[0], &other, 1).is_err(),
+        "no such session"
+    );
+    store.invite(&keys[0], &session, 1).unwrap();
+    store.invite(&keys[1], &session, 2).unwrap();
+    assert_eq!(store.invited(&keys[0]).unwrap(), Some((session, 1)));
+    assert_eq!(store.invited(&keys[1]).unwrap(), Some((session, 2)));
+    store.invite(&keys[2], &session, 1).unwrap();
+    assert_eq!(
+        store.invited(&keys[0]).unwrap(),
+        None,
+        "there is a newer one"
+    );
+    assert_eq!(store.invited(&keys[2]).unwrap(), Some((session, 1)));
+    drop(store);
+    let bytes = std::fs::read(&path).unwrap();
+    for key in &keys {
+        let text = key.to_string();
+        let found = bytes
+            .windows(text.len())
+            .any(|part| part == text.as_bytes());
+        assert!(!found, "only its digest is kept");
+    }
 }
 
 fn file<'a>(name: &str, content: &'a [u8]) -> NewFile<'a> {
