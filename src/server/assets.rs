@@ -12,7 +12,7 @@ struct Asset {
     bytes: &'static [u8],
 }
 
-const ASSETS: [Asset; 5] = [
+const ASSETS: [Asset; 7] = [
     Asset {
         name: "app.css",
         kind: "text/css; charset=utf-8",
@@ -27,6 +27,16 @@ const ASSETS: [Asset; 5] = [
         name: "frames.js",
         kind: "text/javascript; charset=utf-8",
         bytes: include_bytes!("../../static/frames.js"),
+    },
+    Asset {
+        name: "paint.js",
+        kind: "text/javascript; charset=utf-8",
+        bytes: include_bytes!("../../static/paint.js"),
+    },
+    Asset {
+        name: "studio.js",
+        kind: "text/javascript; charset=utf-8",
+        bytes: include_bytes!("../../static/studio.js"),
     },
     Asset {
         name: "upload.js",
