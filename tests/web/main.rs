@@ -10,6 +10,7 @@ mod parts;
 mod serve;
 mod site;
 mod store;
+mod studio;
 mod upload_faults;
 mod upload_limits;
 mod uploads;
