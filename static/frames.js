@@ -13,7 +13,7 @@ const button = (text, label) => {
   return made;
 };
 
-const player = (figure) => {
+const player = (figure, signal) => {
   const strip = figure.querySelector(".strip");
   const pictures = [...strip.querySelectorAll("li")];
   figure.removeAttribute("data-frames");
@@ -52,7 +52,8 @@ const player = (figure) => {
       if (place >= pictures.length) pause(); else show(place);
     }, PERIOD);
   };
-  play.addEventListener("click", () => { if (timer) pause(); else start(); });
+  play.addEventListener("click", () => { if (timer) pause(); else start(); }, { signal });
+  signal.addEventListener("abort", pause);
   slider.addEventListener("input", () => { pause(); show(Number(slider.value) - 1); });
 
   figure.classList.add("player");
@@ -86,5 +87,7 @@ const stills = (figure) => {
   else moving.addEventListener("load", stop, { once: true });
 };
 
-document.querySelectorAll("figure[data-frames]").forEach(player);
-document.querySelectorAll("figure[data-animation]").forEach(stills);
+export const enhance = (main, signal) => {
+  main.querySelectorAll("figure[data-frames]").forEach((figure) => player(figure, signal));
+  main.querySelectorAll("figure[data-animation]").forEach(stills);
+};

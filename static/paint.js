@@ -185,9 +185,3 @@ export const enhance = (main, signal) => {
   read();
   offer();
 };
-
-const main = document.querySelector("main");
-if (main && !main.dataset.paint) {
-  main.dataset.paint = "on";
-  enhance(main, new AbortController().signal);
-}

@@ -76,11 +76,9 @@ export const enhance = (main, signal) => {
   }, { signal });
 
   // A file that is saved leaves the page as it is, so it may be sent again.
-  for (const target of [form, main]) {
-    target.addEventListener("submit", (event) => {
-      if (event.submitter?.value.startsWith("save")) event.stopPropagation();
-    }, { signal });
-  }
+  form.addEventListener("submit", (event) => {
+    if (event.submitter?.value.startsWith("save")) event.stopPropagation();
+  }, { signal });
 
   // ---- what follows from what is typed ----
   const names = () => {
@@ -118,9 +116,3 @@ export const enhance = (main, signal) => {
   show();
   main.querySelector("#said[tabindex]")?.focus();
 };
-
-const main = document.querySelector("main");
-if (main && !main.dataset.studio) {
-  main.dataset.studio = "on";
-  enhance(main, new AbortController().signal);
-}

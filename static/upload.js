@@ -1,9 +1,11 @@
 // Says how far an upload is, and keeps the chosen files where something is wrong.
 
+import { show } from "./swap.js";
+
 const FILES = "input[type=file]";
 
-const bind = () => {
-  const form = document.getElementById("own-task");
+export const enhance = (main, signal) => {
+  const form = main.querySelector("#own-task");
   form?.addEventListener("submit", (event) => {
     const chosen = [...form.querySelectorAll(FILES)].some((input) => input.files.length > 0);
     if (!chosen) return;
@@ -11,7 +13,7 @@ const bind = () => {
     // It is sent here, and can be sent again.
     event.stopPropagation();
     send(form);
-  });
+  }, { signal });
 };
 
 const send = (form) => {
@@ -37,12 +39,12 @@ const send = (form) => {
   });
   request.addEventListener("load", () => {
     const page = new DOMParser().parseFromString(request.responseText, "text/html");
-    const main = page.querySelector("main");
+    let main = page.querySelector("main");
     if (request.status < 400 && request.responseURL) {
       location.assign(request.responseURL);
     } else if (main?.querySelector("#own-task")) {
       const kept = [...form.querySelectorAll(FILES)];
-      document.querySelector("main").replaceWith(main);
+      main = show(page);
       for (const input of main.querySelectorAll(FILES)) {
         const before = kept.find((old) => old.id === input.id);
         if (!before) continue;
@@ -54,7 +56,6 @@ const send = (form) => {
         input.replaceWith(before);
       }
       main.querySelector("#again")?.remove();
-      bind();
       main.querySelector("[aria-invalid]")?.focus();
     } else {
       say(main?.querySelector(".lead")?.textContent ?? "That did not work: try again.");
@@ -70,5 +71,3 @@ const send = (form) => {
   }
   request.send(data);
 };
-
-bind();

@@ -12,46 +12,35 @@ struct Asset {
     bytes: &'static [u8],
 }
 
-const ASSETS: [Asset; 7] = [
-    Asset {
-        name: "app.css",
-        kind: "text/css; charset=utf-8",
-        bytes: include_bytes!("../../static/app.css"),
-    },
-    Asset {
-        name: "app.js",
-        kind: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/app.js"),
-    },
-    Asset {
-        name: "frames.js",
-        kind: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/frames.js"),
-    },
-    Asset {
-        name: "paint.js",
-        kind: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/paint.js"),
-    },
-    Asset {
-        name: "studio.js",
-        kind: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/studio.js"),
-    },
-    Asset {
-        name: "upload.js",
-        kind: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/upload.js"),
-    },
-    Asset {
-        name: "icon.svg",
-        kind: "image/svg+xml",
-        bytes: include_bytes!("../../static/icon.svg"),
-    },
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// Reads a file of the folder at build time.
+macro_rules! asset {
+    ($name:literal, $kind:expr) => {
+        Asset {
+            name: $name,
+            kind: $kind,
+            bytes: include_bytes!(concat!("../../static/", $name)),
+        }
+    };
+}
+
+const ASSETS: &[Asset] = &[
+    asset!("app.css", CSS),
+    asset!("app.js", SCRIPT),
+    asset!("builder.js", SCRIPT),
+    asset!("frames.js", SCRIPT),
+    asset!("keys.js", SCRIPT),
+    asset!("paint.js", SCRIPT),
+    asset!("studio.js", SCRIPT),
+    asset!("swap.js", SCRIPT),
+    asset!("times.js", SCRIPT),
+    asset!("upload.js", SCRIPT),
+    asset!("icon.svg", "image/svg+xml"),
 ];
 
-/// Changes with any of the files, so that browsers may keep them for ever.
-pub(crate) const STAMP: u32 = {
+const STAMP: u32 = {
     // FNV-1a, over all bytes of all files.
     let mut hash: u32 = 0x811c_9dc5;
     let mut file = 0;
@@ -67,11 +56,19 @@ pub(crate) const STAMP: u32 = {
     hash
 };
 
-/// `GET /static/{name}`.
-pub(crate) async fn get(Path(name): Path<String>) -> Result<Response, PageError> {
+/// Changes with any of the files, so that browsers may keep them for ever.
+pub(crate) fn stamp() -> String {
+    format!("{STAMP:08x}")
+}
+
+/// `GET /static/{stamp}/{name}`. The stamp is a folder, so that what a module
+/// imports beside itself has the same stamp; there is no other than ours.
+pub(crate) async fn get(
+    Path((stamp, name)): Path<(String, String)>,
+) -> Result<Response, PageError> {
     let asset = ASSETS
         .iter()
-        .find(|asset| asset.name == name)
+        .find(|asset| asset.name == name && stamp == self::stamp())
         .ok_or(WebError::NoPage)?;
     Ok((
         [

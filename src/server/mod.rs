@@ -4,6 +4,7 @@
 //! through the layers of [`app`], a handler in `api` or `pages`, and
 //! `teaching`, which is the only way to a session.
 
+mod ahead;
 mod api;
 mod assets;
 mod behaviour;
@@ -95,7 +96,7 @@ pub fn app(state: AppState) -> Router {
         .route("/studio/recordings", post(studio::record));
     let pages = pages::routes()
         .merge(studio::routes())
-        .route("/static/{name}", get(assets::get))
+        .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))
         .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))

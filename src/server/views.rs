@@ -21,7 +21,7 @@ impl Shell {
     pub(crate) fn plain(title: &str) -> Self {
         Self {
             title: title.to_owned(),
-            stamp: format!("{:08x}", assets::STAMP),
+            stamp: assets::stamp(),
             session: None,
         }
     }

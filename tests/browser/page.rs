@@ -19,7 +19,8 @@ pub(crate) struct Page {
     pub(crate) words: Vec<String>,
     /// The rule on show, in the form that the page's script reads.
     rule: Option<String>,
-    /// The time at which the browser began to load it, different for each page.
+    /// When it was first looked at: later for each that comes after, also where no
+    /// page is loaded.
     born: f64,
     ready: bool,
     waiting: bool,
@@ -33,7 +34,7 @@ const READ: &str = r#"
         question: main.dataset.question ?? null,
         words: [...main.querySelectorAll("ol[data-word]")].map((word) => word.dataset.word),
         rule: main.querySelector("[data-rule]")?.dataset.rule ?? null,
-        born: performance.timeOrigin,
+        born: main.born ??= performance.timeOrigin + performance.now(),
         ready: document.readyState === "complete",
         waiting: document.querySelector("meta[http-equiv=refresh]") !== null,
     };

@@ -4,6 +4,7 @@
 mod api;
 mod classes;
 mod conflicts;
+mod desk;
 mod pages;
 mod parts;
 #[cfg(unix)]

@@ -340,21 +340,17 @@ async fn contradictory_answers_come_as_cards_that_can_be_mended() {
 #[tokio::test]
 async fn every_answer_has_the_headers_that_keep_others_out() {
     let site = Site::in_memory();
-    let css = site.get("/").await.text;
-    let css = css
-        .split("href=\"/static/app.css")
-        .nth(1)
-        .unwrap()
-        .split('"')
-        .next()
-        .unwrap();
+    let start = site.get("/").await.text;
+    let after = start.split_once("href=\"/static/").unwrap().1;
+    let stamp = after.split_once('/').unwrap().0;
     for (path, kind) in [
         ("/".to_owned(), "text/html"),
         ("/nothing".to_owned(), "text/html"),
         ("/api/v1/nothing".to_owned(), "application/json"),
-        (format!("/static/app.css{css}"), "text/css"),
-        ("/static/app.js".to_owned(), "text/javascript"),
-        ("/static/icon.svg".to_owned(), "image/svg+xml"),
+        (format!("/static/{stamp}/app.css"), "text/css"),
+        (format!("/static/{stamp}/app.js"), "text/javascript"),
+        (format!("/static/{stamp}/swap.js"), "text/javascript"),
+        (format!("/static/{stamp}/icon.svg"), "image/svg+xml"),
     ] {
         let reply = site.get(&path).await;
         let policy = reply.header("content-security-policy");
@@ -373,8 +369,16 @@ async fn every_answer_has_the_headers_that_keep_others_out() {
             );
         }
     }
-    let gone = site.get("/static/../Cargo.toml").await;
-    assert_eq!(gone.status, StatusCode::NOT_FOUND);
+    for path in [
+        "/static/../Cargo.toml",
+        "/static/app.js",
+        "/static/00000000/app.js",
+        &format!("/static/{stamp}/nothing.js"),
+    ] {
+        let gone = site.get(path).await;
+        assert_eq!(gone.status, StatusCode::NOT_FOUND, "{path}");
+        assert_eq!(gone.header("cache-control"), "no-store", "{path}");
+    }
 }
 
 #[tokio::test]

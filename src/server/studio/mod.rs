@@ -2,11 +2,12 @@
 //! file and begins to teach it.
 //!
 //! A [`Sheet`] is the form as it was filled in; `content` makes a task file's content
-//! of it and the other way round, so that nothing can be said here that a file cannot
+//! of it, and `opened` a form of such a content, so that nothing can be said here that a file cannot
 //! say. The reader of task files says what is wrong; `faults` finds the field.
 
 mod content;
 mod faults;
+mod opened;
 mod page;
 mod preview;
 mod sheet;
@@ -20,8 +21,9 @@ use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::get;
 use serde_json::Value;
 
-use self::content::{content, sheet};
+use self::content::content;
 use self::faults::SheetFaults;
+use self::opened::sheet;
 use self::page::{PreviewPart, RecordingsPage, Said, StudioPage};
 use self::sheet::{Row, Sheet, resized};
 use super::AppState;

@@ -91,9 +91,9 @@ fn of(task: &Task, universe: &Universe, whole: bool) -> Preview {
                         .collect();
                     let number = counted(listing.words.len(), "behaviour");
                     if listing.complete {
-                        format!("{number} can be asked about.")
+                        format!("{number} can be asked about. The simplest:")
                     } else {
-                        format!("More than {number} can be asked about.")
+                        format!("More than {number} can be asked about. The simplest:")
                     }
                 }
                 None if whole && task.world.is_some() => {
@@ -114,7 +114,10 @@ fn of(task: &Task, universe: &Universe, whole: bool) -> Preview {
         }
         Universe::Finite(_) | Universe::Linear(_) => {
             let items = universe.items();
-            preview.about = format!("{} can be asked about.", counted(items.len(), "behaviour"));
+            preview.about = format!(
+                "{} can be asked about, such as:",
+                counted(items.len(), "behaviour")
+            );
             preview.simplest = (items.iter().take(SHOWN))
                 .map(|item| (*item).to_owned())
                 .collect();
