@@ -105,12 +105,14 @@ export const enhance = (main, signal) => {
       main.querySelector("#preview").replaceChildren(...page.body.childNodes);
     } catch { /* The preview stays as it is; “Check” asks again. */ }
   };
-  form.addEventListener("input", () => {
+  const follow = () => {
     show();
     names();
     clearTimeout(timer);
     timer = setTimeout(preview, PAUSE);
-  }, { signal });
+  };
+  // What fills fields in a person's stead may tell of one of them alone.
+  for (const name of ["input", "change"]) form.addEventListener(name, follow, { signal });
   signal.addEventListener("abort", () => clearTimeout(timer));
 
   show();
