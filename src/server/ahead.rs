@@ -3,7 +3,8 @@
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use tokio::sync::{Semaphore, watch};
 
@@ -154,7 +155,7 @@ impl Foresight {
         &self,
         id: SessionId,
         entries: u64,
-        patience: std::time::Duration,
+        patience: Duration,
         view: impl Fn(&Trial) -> T,
     ) -> Vec<T> {
         let ahead = {
@@ -171,7 +172,7 @@ impl Foresight {
         ahead.trials().iter().map(view).collect()
     }
 
-    fn sessions(&self) -> std::sync::MutexGuard<'_, VecDeque<(SessionId, Arc<Ahead>)>> {
+    fn sessions(&self) -> MutexGuard<'_, VecDeque<(SessionId, Arc<Ahead>)>> {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -181,7 +182,7 @@ impl Ahead {
         self.stale.store(true, Ordering::Relaxed);
     }
 
-    fn trials(&self) -> std::sync::MutexGuard<'_, Vec<Trial>> {
+    fn trials(&self) -> MutexGuard<'_, Vec<Trial>> {
         self.trials.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -34,6 +34,7 @@ const ASSETS: &[Asset] = &[
     asset!("keys.js", SCRIPT),
     asset!("paint.js", SCRIPT),
     asset!("studio.js", SCRIPT),
+    asset!("live.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
     asset!("upload.js", SCRIPT),

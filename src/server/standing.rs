@@ -7,6 +7,7 @@ use axum::response::{IntoResponse, Response};
 use super::behaviour::{BehaviourView, Chip, Content, chips};
 use super::error::{PageError, WebError};
 use super::export;
+use super::follow::Follow;
 use super::forms::Faults;
 use super::past::PastView;
 use super::rule::RuleView;
@@ -141,6 +142,8 @@ pub(crate) struct Typed {
     pub(crate) atom: String,
     pub(crate) values: Vec<String>,
     pub(crate) label: String,
+    /// What would follow each way to mend a contradiction.
+    pub(crate) follows: Vec<Follow>,
 }
 
 /// The page of a session as it stands.
@@ -201,6 +204,10 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 .answers
                 .iter()
                 .filter_map(|&number| PastView::of(number, session))
+                .map(|mut past| {
+                    Follow::add_to(&typed.follows, &mut past);
+                    past
+                })
                 .collect(),
             message: session.explain(conflict),
             minimal: conflict.minimal,

@@ -9,6 +9,7 @@ use tokio::sync::{Mutex as AsyncMutex, Semaphore};
 
 use super::ahead::{Foresight, Trial};
 use super::error::WebError;
+use super::live::Live;
 use super::upload::{Pools, Upload};
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
 use crate::store::{Entry, Listed, SessionId, Store, StoreError, StoredFile};
@@ -36,6 +37,7 @@ pub(crate) struct Teaching {
     loaded: Mutex<Loaded>,
     permits: Arc<Semaphore>,
     foresight: Arc<Foresight>,
+    live: Arc<Live>,
 }
 
 #[derive(Default)]
@@ -53,6 +55,7 @@ impl Teaching {
             loaded: Mutex::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
             foresight: Arc::new(Foresight::new(width)),
+            live: Arc::default(),
         }
     }
 
@@ -133,6 +136,11 @@ impl Teaching {
         .await
     }
 
+    /// Who waits for news.
+    pub(crate) fn live(&self) -> &Live {
+        &self.live
+    }
+
     /// The store, for what is read piece by piece.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         Arc::clone(&self.archive.store)
@@ -160,7 +168,7 @@ impl Teaching {
         let archive = Arc::clone(&self.archive);
         let slot = self.slot(id);
         let permits = Arc::clone(&self.permits);
-        let foresight = Arc::clone(&self.foresight);
+        let (foresight, live) = (Arc::clone(&self.foresight), Arc::clone(&self.live));
         let work = async move {
             let mut held = slot.lock_owned().await;
             let permit = Arc::clone(&permits).acquire_owned().await;
@@ -175,6 +183,7 @@ impl Teaching {
                 };
                 match advance(&archive, &id, &mut session, decide, &foresight) {
                     Ok(position) => {
+                        live.tell(id, session.entries());
                         foresight.prepare(id, &session, &permits);
                         let shown = view(&session, &position);
                         *held = Some(session);
@@ -195,6 +204,19 @@ impl Teaching {
             Ok(result) => result,
             Err(_) => Err(WebError::Slow),
         }
+    }
+
+    /// What `view` shows of every answer that was tried out on the session as it
+    /// stands with so many entries; those still to be tried are waited for, within
+    /// `patience`.
+    pub(crate) async fn survey<T>(
+        &self,
+        id: SessionId,
+        entries: u64,
+        patience: Duration,
+        view: impl Fn(&Trial) -> T,
+    ) -> Vec<T> {
+        self.foresight.survey(id, entries, patience, view).await
     }
 
     /// A session's log, as it lies in the store.
