@@ -53,6 +53,9 @@ fn prose() -> impl Strategy<Value = String> {
         .prop_map(|(lines, windows)| lines.join(if windows { "\r\n" } else { "\n\n" }))
 }
 
+/// A word and a colour, where there are any.
+type Looks = (Option<String>, Option<&'static str>);
+
 fn symbols() -> impl Strategy<Value = Vec<Value>> {
     let marks = Just("ABCDE\"\\'üλ=0".chars().collect::<Vec<_>>()).prop_shuffle();
     let one = (
@@ -61,20 +64,19 @@ fn symbols() -> impl Strategy<Value = Vec<Value>> {
     );
     (marks, prop::collection::vec(one, 1..5), prop::bool::ANY).prop_map(|(marks, looks, bare)| {
         let symbols = looks.into_iter().zip(marks).enumerate();
-        let symbol =
-            |(i, ((word, colour), letter)): (usize, ((Option<String>, Option<&str>), char))| {
-                let mut symbol = json!({"name": format!("s{i}")});
-                if !bare {
-                    symbol["letter"] = letter.to_string().into();
-                    if let Some(word) = word {
-                        symbol["word"] = word.into();
-                    }
-                    if let Some(colour) = colour {
-                        symbol["colour"] = colour.into();
-                    }
+        let symbol = |(i, ((word, colour), letter)): (usize, (Looks, char))| {
+            let mut symbol = json!({"name": format!("s{i}")});
+            if !bare {
+                symbol["letter"] = letter.to_string().into();
+                if let Some(word) = word {
+                    symbol["word"] = word.into();
                 }
-                symbol
-            };
+                if let Some(colour) = colour {
+                    symbol["colour"] = colour.into();
+                }
+            }
+            symbol
+        };
         symbols.map(symbol).collect()
     })
 }

@@ -95,9 +95,8 @@ impl Desk {
 
     pub(crate) fn at(&self, name: &str) -> &str {
         let field = self.fields.iter().find(|(known, _)| known == name);
-        field
-            .map(|(_, value)| value.as_str())
-            .unwrap_or_else(|| panic!("no field {name}"))
+        let (_, value) = field.unwrap_or_else(|| panic!("no field {name}"));
+        value
     }
 
     pub(crate) async fn press(&self, site: &Site, button: &str) -> Reply {

@@ -145,6 +145,70 @@ async fn every_task_file_is_opened_and_saved_as_the_same_task() {
     assert_eq!(task(&desk.press(&site, "save").await.text), task(ROBOT));
 }
 
+/// More than a title may have: 160 characters.
+const LONG: &str = "one and another and one more, and so on and so on and on and on, and one and another and one more, and so on and so on and on and on, and still no end in sight.";
+
+/// What is typed into which field of the robot's task, at which field that is told, and
+/// how.
+const FAULTS: &[(&str, &str, &str, &str)] = &[
+    ("title", LONG, "title", "at most 120"),
+    (
+        "symbols[1].colour",
+        "mud",
+        "symbols-1-colour",
+        "`mud` is no colour",
+    ),
+    (
+        "symbols[1].letter",
+        "Yes",
+        "symbols-1-letter",
+        "more than a letter",
+    ),
+    ("symbols[3].name", "R", "symbols-3-name", "twice"),
+    (
+        "symbols[3].name",
+        "a b",
+        "symbols-3-name",
+        "letters, digits",
+    ),
+    ("world.map", "..\n..", "world-map", "no start"),
+    ("world.map", "SYRBO\nY..?.", "world-map", "`?`"),
+    (
+        "world.steps",
+        "many",
+        "world-steps",
+        "a whole number between 1 and 1000",
+    ),
+    (
+        "prior.holds[1].rule",
+        "reach Q",
+        "prior-holds-1-rule",
+        "`Q` is not a symbol",
+    ),
+    (
+        "examples[1].atom",
+        "Y Q",
+        "examples-1-atom",
+        "`Q` is not a symbol",
+    ),
+    ("examples[2].label", "", "examples-2-label", "acceptable"),
+    (
+        "costs.membership",
+        "-1",
+        "costs-membership",
+        "greater than 0",
+    ),
+    ("max_states", "0", "max_states", "between 1 and 100"),
+    (
+        "practice.answer",
+        "second",
+        "practice-answer",
+        "examples[0] says",
+    ),
+    ("practice.why", "", "practice-why", "say in a sentence"),
+    ("target", "reach Q", "target", "`Q` is not a symbol"),
+];
+
 #[tokio::test]
 async fn all_faults_are_told_at_their_fields_and_nothing_is_lost() {
     let site = Site::in_memory();
@@ -159,76 +223,9 @@ async fn all_faults_are_told_at_their_fields_and_nothing_is_lost() {
         assert_eq!(desk.page.status, StatusCode::OK);
         desk
     };
-    for (field, typed, at, part) in [
-        ("title", "x".repeat(200), "title", "at most 120"),
-        (
-            "symbols[1].colour",
-            "mud".into(),
-            "symbols-1-colour",
-            "`mud` is no colour",
-        ),
-        (
-            "symbols[1].letter",
-            "Yes".into(),
-            "symbols-1-letter",
-            "more than a letter",
-        ),
-        ("symbols[3].name", "R".into(), "symbols-3-name", "twice"),
-        (
-            "symbols[3].name",
-            "a b".into(),
-            "symbols-3-name",
-            "letters, digits",
-        ),
-        ("world.map", "..\n..".into(), "world-map", "no start"),
-        ("world.map", "SYRBO\nY..?.".into(), "world-map", "`?`"),
-        (
-            "world.steps",
-            "many".into(),
-            "world-steps",
-            "a whole number between 1 and 1000",
-        ),
-        (
-            "prior.holds[1].rule",
-            "reach Q".into(),
-            "prior-holds-1-rule",
-            "`Q` is not a symbol",
-        ),
-        (
-            "examples[1].atom",
-            "Y Q".into(),
-            "examples-1-atom",
-            "`Q` is not a symbol",
-        ),
-        (
-            "examples[2].label",
-            String::new(),
-            "examples-2-label",
-            "acceptable",
-        ),
-        (
-            "costs.membership",
-            "-1".into(),
-            "costs-membership",
-            "greater than 0",
-        ),
-        ("max_states", "0".into(), "max_states", "between 1 and 100"),
-        (
-            "practice.answer",
-            "second".into(),
-            "practice-answer",
-            "examples[0] says",
-        ),
-        (
-            "practice.why",
-            String::new(),
-            "practice-why",
-            "say in a sentence",
-        ),
-        ("target", "reach Q".into(), "target", "`Q` is not a symbol"),
-    ] {
+    for (field, typed, at, part) in FAULTS.iter().copied() {
         let mut desk = base().await;
-        desk.fill(field, &typed);
+        desk.fill(field, typed);
         desk.then(&site, "check").await;
         assert_eq!(
             desk.page.status,
@@ -264,7 +261,7 @@ async fn all_faults_are_told_at_their_fields_and_nothing_is_lost() {
     }
     // Several at once.
     let mut desk = base().await;
-    desk.fill("title", &"x".repeat(200));
+    desk.fill("title", LONG);
     desk.fill("max_states", "0");
     desk.fill("prior.holds[0].rule", "shun R");
     desk.then(&site, "check").await;

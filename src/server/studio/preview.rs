@@ -83,9 +83,10 @@ fn of(task: &Task, universe: &Universe, whole: bool) -> Preview {
                     preview.simplest = (listing.words.iter().take(SHOWN))
                         .map(|word| {
                             let texts: Vec<&str> = word.iter().map(|s| task.text(s)).collect();
-                            match texts.is_empty() {
-                                true => format!("({})", task.empty),
-                                false => texts.join(" · "),
+                            if texts.is_empty() {
+                                format!("({})", task.empty)
+                            } else {
+                                texts.join(" · ")
                             }
                         })
                         .collect();
@@ -104,7 +105,7 @@ fn of(task: &Task, universe: &Universe, whole: bool) -> Preview {
             };
         }
         Universe::Monotone(axes) => {
-            preview.about = "Limits are learned on what is measured.".to_owned();
+            preview.about = String::from("Limits are learned on what is measured.");
             preview.simplest = (axes.axes().iter())
                 .map(|axis| {
                     let (best, worst) = (axis.spell(axis.best), axis.spell(axis.worst));
