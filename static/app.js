@@ -5,11 +5,13 @@ import * as builder from "./builder.js";
 import * as frames from "./frames.js";
 import * as keys from "./keys.js";
 import * as live from "./live.js";
+import * as paint from "./paint.js";
+import * as studio from "./studio.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as upload from "./upload.js";
 
-const MODULES = [keys, swap, live, times, builder, frames, upload];
+const MODULES = [keys, swap, live, times, builder, frames, upload, paint, studio];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

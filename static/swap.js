@@ -117,7 +117,8 @@ const load = async (address) => {
 
 /** Fetches this page once more, and shows it where it is another than before. */
 export const refresh = async () => {
-  if (sending || !main()) return;
+  // A form that is being filled in is nobody's to replace.
+  if (sending || !main() || main().matches("[data-typed]")) return;
   const mine = ++turn;
   let page = null;
   try {

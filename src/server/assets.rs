@@ -32,6 +32,8 @@ const ASSETS: &[Asset] = &[
     asset!("builder.js", SCRIPT),
     asset!("frames.js", SCRIPT),
     asset!("keys.js", SCRIPT),
+    asset!("paint.js", SCRIPT),
+    asset!("studio.js", SCRIPT),
     asset!("live.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),

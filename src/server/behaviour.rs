@@ -32,7 +32,7 @@ impl Chip {
         self.text == self.letter
     }
 
-    fn look(&self) -> Look {
+    pub(crate) fn look(&self) -> Look {
         Look {
             letter: self.letter.clone(),
             tone: self.tone,

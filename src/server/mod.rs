@@ -26,6 +26,7 @@ mod rule;
 mod scene;
 mod standing;
 mod start;
+mod studio;
 mod teaching;
 mod upload;
 mod views;
@@ -93,8 +94,11 @@ pub fn app(state: AppState) -> Router {
             ApiError(panicked(&panic)).into_response()
         }))
         .layer(DefaultBodyLimit::max(API_LIMIT));
-    let new_session = Router::new().route("/sessions", post(start::begin));
+    let new_session = Router::new()
+        .route("/sessions", post(start::begin))
+        .route("/studio/recordings", post(studio::record));
     let pages = pages::routes()
+        .merge(studio::routes())
         .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))

@@ -6,13 +6,14 @@ use axum::response::{IntoResponse, Redirect, Response};
 
 use super::AppState;
 use super::behaviour::{Chip, chips};
-use super::error::{PageError, WebError};
+use super::error::{PageError, WebError, sentence};
 use super::forms::{FILE, Faults};
 use super::pages::read_form;
 use super::upload::{self, OwnRule};
 use super::views::{Shell, render};
 use crate::session::{Malformed, Setup, Task, offered, ready};
 use crate::store::{Listed, SessionId};
+use crate::task::{Fault, TaskFile};
 
 struct TaskCard {
     name: String,
@@ -47,9 +48,44 @@ struct StartPage {
     sessions: Vec<SessionCard>,
     own: OwnForm,
     faults: Faults,
+    file: SentFile,
 }
 
-async fn start_page(app: &AppState, own: OwnForm, faults: Faults) -> Result<Response, WebError> {
+/// A task file that came, where something is wrong with it.
+#[derive(Default)]
+struct SentFile {
+    text: String,
+    faults: Vec<String>,
+}
+
+impl SentFile {
+    /// All that is wrong with it, by line and column.
+    fn of(text: &str) -> Self {
+        let told = |fault: &Fault| {
+            let place = match (fault.line, fault.column) {
+                (Some(line), Some(column)) => format!("line {line}, column {column}: "),
+                _ => String::new(),
+            };
+            let path = match fault.path.as_str() {
+                "" => String::new(),
+                path => format!("`{path}`: "),
+            };
+            sentence(&format!("{place}{path}{}", fault.message))
+        };
+        let faults = TaskFile::sent(text).err().unwrap_or_default();
+        Self {
+            text: text.to_owned(),
+            faults: faults.iter().map(told).collect(),
+        }
+    }
+}
+
+async fn start_page(
+    app: &AppState,
+    own: OwnForm,
+    faults: Faults,
+    file: SentFile,
+) -> Result<Response, WebError> {
     let sessions = app.teaching.list(20).await?;
     Ok(render(&StartPage {
         shell: Shell::plain("Teach a rule"),
@@ -58,6 +94,7 @@ async fn start_page(app: &AppState, own: OwnForm, faults: Faults) -> Result<Resp
         sessions: sessions.iter().filter_map(session_card).collect(),
         own,
         faults,
+        file,
     }))
 }
 
@@ -95,7 +132,8 @@ fn session_card(listed: &Listed) -> Option<SessionCard> {
 }
 
 pub(crate) async fn show(State(app): State<AppState>) -> Result<Response, PageError> {
-    Ok(start_page(&app, OwnForm::default(), Faults::default()).await?)
+    let file = SentFile::default();
+    Ok(start_page(&app, OwnForm::default(), Faults::default(), file).await?)
 }
 
 /// `POST /sessions`: a ready task, or one's own with recordings or without.
@@ -144,7 +182,14 @@ pub(crate) async fn begin(
                 sent: own.sent,
             };
             let faults = Faults::of(&error, &FIELDS);
-            let page = start_page(&app, typed, faults).await?;
+            let file = if own.form.has_file() {
+                let text = own.form.text(FILE).to_owned();
+                let read = tokio::task::spawn_blocking(move || SentFile::of(&text)).await;
+                read.map_err(WebError::internal)?
+            } else {
+                SentFile::default()
+            };
+            let page = start_page(&app, typed, faults, file).await?;
             Ok((error.status(), page).into_response())
         }
         Err(error) => Err(error.into()),

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::reader::{Faults, Fields, Malformed};
-use super::universe::{Atom, AtomText, Bare, Universe};
+use super::universe::{Atom, AtomText, Bare, Concept, Universe};
 use super::{MAX_EXAMPLES, MAX_WORD};
 
 /// A behaviour whose label is known before the first question.
@@ -266,4 +266,62 @@ pub(super) fn read_practice(
         )
     })?;
     Ok(Some(Practice { asks, answer, why }))
+}
+
+/// Checks that the expected answer contradicts nothing that is known: no example, not
+/// what is known beforehand, and not the target.
+pub(super) fn check_answer(
+    practice: &Practice,
+    examples: &[Example],
+    target: Option<&Concept>,
+    universe: &Universe,
+) -> Result<(), Malformed> {
+    let known = |text: &AtomText| -> Option<(bool, String)> {
+        if let Some(place) = examples.iter().position(|example| example.atom == *text) {
+            return Some((examples[place].label, format!("examples[{place}]")));
+        }
+        let atom = universe.parse(text).ok()?;
+        let settled = match (universe.situation(), &atom) {
+            (Some(situation), Atom::Word(word)) => situation.prior.settled(word),
+            _ => None,
+        };
+        if let Some(label) = settled {
+            return Some((label, "`prior`".to_owned()));
+        }
+        target.map(|target| (universe.accepts(target, &atom), "`target`".to_owned()))
+    };
+    let verdict = |label: bool| {
+        if label {
+            "acceptable"
+        } else {
+            "not acceptable"
+        }
+    };
+    let answer = practice.answer;
+    let said = match &practice.asks {
+        Practised::Judgement(atom) => match known(atom) {
+            Some((label, by)) if label != (answer == "accept") => {
+                format!("{by} says that this is {}", verdict(label))
+            }
+            _ => return Ok(()),
+        },
+        Practised::Comparison { first, second } => match (known(first), known(second)) {
+            (Some((one, by)), Some((other, also)))
+                if one != other
+                    && answer != "incomparable"
+                    && answer != if one { "first" } else { "second" } =>
+            {
+                format!(
+                    "{by} says that the first is {}, and {also} that the second is {}",
+                    verdict(one),
+                    verdict(other)
+                )
+            }
+            _ => return Ok(()),
+        },
+    };
+    Err(Malformed::new(
+        "practice.answer",
+        format!("the expected answer is `{answer}`, but {said}: correct one of them"),
+    ))
 }

@@ -91,8 +91,8 @@ impl TaskFile {
         let is_json = path
             .extension()
             .is_some_and(|extension| extension == "json");
-        let read = if is_json { from_json } else { from_toml };
-        read(&text, folder).map_err(unusable)
+        let read = if is_json { from_json } else { read_toml };
+        read(&text, Files::In(folder)).map_err(unusable)
     }
 
     /// Reads a task as TOML; files that it names lie in this folder.
@@ -102,6 +102,29 @@ impl TaskFile {
     /// Names all that is wrong with it.
     pub fn from_toml(text: &str, folder: &Path) -> Result<Self, Vec<Fault>> {
         from_toml(text, folder)
+    }
+
+    /// Reads the text of a task file that was sent, TOML or JSON. The files that it
+    /// names are elsewhere: recordings may be, and are not looked at.
+    ///
+    /// # Errors
+    ///
+    /// Names all that is wrong with it.
+    pub fn sent(text: &str) -> Result<Self, Vec<Fault>> {
+        if text.trim_start().starts_with('{') {
+            from_json(text, Files::Elsewhere)
+        } else {
+            read_toml(text, Files::Elsewhere)
+        }
+    }
+
+    /// Reads the content of a task file, as [`Self::sent`] does.
+    ///
+    /// # Errors
+    ///
+    /// Names all that is wrong with it.
+    pub fn of_content(content: &serde_json::Value) -> Result<Self, Vec<Malformed>> {
+        read(content, Files::Elsewhere)
     }
 }
 
@@ -118,11 +141,15 @@ fn parsed(text: &str) -> Result<(serde_json::Value, Places), Fault> {
 }
 
 fn from_toml(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
-    let (value, places) = parsed(text).map_err(|fault| vec![fault])?;
-    read(&value, folder).map_err(|faults| in_order(faults, &places, text))
+    read_toml(text, Files::In(folder))
 }
 
-fn from_json(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
+fn read_toml(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
+    let (value, places) = parsed(text).map_err(|fault| vec![fault])?;
+    read(&value, files).map_err(|faults| in_order(faults, &places, text))
+}
+
+fn from_json(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
     let value = serde_json::from_str(text).map_err(|error| {
         let place = Place {
             line: error.line(),
@@ -131,7 +158,7 @@ fn from_json(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
         let message = format!("this is not JSON: {error}");
         vec![placed(place, Malformed::new("", message))]
     })?;
-    read(&value, folder).map_err(|faults| {
+    read(&value, files).map_err(|faults| {
         let unplaced = |Malformed { path, message }| Fault {
             line: None,
             column: None,
@@ -142,8 +169,8 @@ fn from_json(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
     })
 }
 
-fn read(value: &serde_json::Value, folder: &Path) -> Result<TaskFile, Vec<Malformed>> {
-    let read = super::read(value, Files::In(folder))?;
+fn read(value: &serde_json::Value, files: Files<'_>) -> Result<TaskFile, Vec<Malformed>> {
+    let read = super::read(value, files)?;
     Ok(TaskFile {
         task: read.task,
         max_states: read.max_states,

@@ -18,6 +18,7 @@ mod subject;
 mod symbols;
 mod target;
 mod universe;
+mod write;
 
 use std::sync::Arc;
 
@@ -40,6 +41,7 @@ pub use universe::{
     Atom, AtomText, Axes, Axis, BehaviourText, Concept, ConceptText, OffGrid, Picture, Rewards,
     Saved, Universe,
 };
+pub use write::toml_text;
 
 use self::reader::Faults;
 use self::situation::Files;
@@ -287,7 +289,7 @@ impl TryFrom<Value> for Task {
 fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     let fields = Fields::of(value, "").map_err(|fault| vec![fault])?;
     let mut faults = Faults::default();
-    let is_file = matches!(files, Files::In(_));
+    let is_file = !matches!(files, Files::None);
     if fields.get("target").is_some() && !is_file {
         faults.0.push(Malformed::new(
             "target",
@@ -324,6 +326,12 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
             }
             _ => None,
         };
+    if let Some(Some(practice)) = &practice {
+        let target = target.as_ref();
+        faults.keep(examples::check_answer(
+            practice, &examples, target, universe,
+        ));
+    }
     if !faults.0.is_empty() {
         return Err(faults.0);
     }

@@ -118,6 +118,8 @@ pub(super) enum Files<'a> {
     None,
     /// Those by a path that is relative to this folder.
     In(&'a Path),
+    /// Any, but none is here to be looked at.
+    Elsewhere,
 }
 
 impl Files<'_> {
@@ -128,6 +130,10 @@ impl Files<'_> {
             Files::None => Err(Malformed::new(
                 path,
                 format!("`{named}`: a session reads no files, give the content itself"),
+            )),
+            Files::Elsewhere => Err(Malformed::new(
+                path,
+                format!("`{named}`: this file is not here, give its content itself"),
             )),
         }
     }
@@ -216,11 +222,12 @@ fn read_source(fields: &Fields<'_>, files: Files<'_>) -> Result<Source, Malforme
     let upload = fields.text("upload", 60)?;
     match (files, named, upload) {
         (Files::In(_), Some(named), None) => files.find(&named, &path).map(Source::File),
-        (Files::In(_), _, Some(_)) => Err(Malformed::new(
+        (Files::Elsewhere, Some(named), None) => Ok(Source::File(named.into())),
+        (Files::In(_) | Files::Elsewhere, _, Some(_)) => Err(Malformed::new(
             fields.path_of("upload"),
             "an upload is known to its server alone: name a file of recordings as `recordings`",
         )),
-        (Files::In(_), None, None) => Err(Malformed::new(
+        (Files::In(_) | Files::Elsewhere, None, None) => Err(Malformed::new(
             path,
             "name the file of the recordings, one JSON object a line",
         )),
@@ -237,13 +244,14 @@ fn read_source(fields: &Fields<'_>, files: Files<'_>) -> Result<Source, Malforme
     }
 }
 
-/// Whether the world is built elsewhere, of what was uploaded.
-pub(super) fn is_uploaded(text: Option<&WorldText>) -> bool {
-    let source = match text {
-        Some(WorldText::Pool { source }) => Some(source),
-        _ => None,
-    };
-    matches!(source, Some(Source::Upload(_)))
+/// Whether the world is built later, of recordings that are not here yet.
+pub(super) fn comes_later(text: Option<&WorldText>, files: Files<'_>) -> bool {
+    match text {
+        Some(WorldText::Pool { source }) => {
+            matches!(source, Source::Upload(_)) || matches!(files, Files::Elsewhere)
+        }
+        _ => false,
+    }
 }
 
 /// The world that is written; without one, all words.

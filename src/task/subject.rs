@@ -58,7 +58,7 @@ impl Subject {
             && world.is_some() == told.is_some()
             && (world.is_some() || !text.is_empty())
             // Its recordings come later.
-            && !situation::is_uploaded(world.as_ref())
+            && !situation::comes_later(world.as_ref(), files)
         {
             let path = if text.is_empty() { "world" } else { "prior" };
             let world = situation::build_world(world.as_ref(), &symbols, &alphabet);

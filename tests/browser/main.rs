@@ -12,6 +12,7 @@ mod house;
 mod page;
 mod pictures;
 mod recordings;
+mod studio;
 mod teaching;
 mod walks;
 

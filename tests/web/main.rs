@@ -4,12 +4,14 @@
 mod api;
 mod classes;
 mod conflicts;
+mod desk;
 mod pages;
 mod parts;
 #[cfg(unix)]
 mod serve;
 mod site;
 mod store;
+mod studio;
 mod upload_faults;
 mod upload_limits;
 mod uploads;

@@ -378,7 +378,7 @@ async fn a_task_file_begins_a_session_from_the_start_page() {
     }
     let begun = site.get("/api/v1/sessions").await.json()["sessions"].clone();
     for (file, part) in [
-        ("symbols = [", "line 1: this is not TOML"),
+        ("symbols = [", "line 1, column 12: this is not TOML"),
         ("{\"symbols\": ", "this is not JSON"),
         ("symbols = [\"a\", \"a\"]", "`symbols[1]`"),
         (
@@ -387,7 +387,7 @@ async fn a_task_file_begins_a_session_from_the_start_page() {
         ),
         (
             "class = {kind = \"finite\", table = \"here.csv\"}",
-            "reads no files",
+            "this file is not here",
         ),
     ] {
         let reply = send(file).await;
