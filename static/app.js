@@ -2,13 +2,14 @@
 // whenever another `<main>` takes its place.
 
 import * as builder from "./builder.js";
-import * as frames from "./frames.js";
+import * as fold from "./fold.js";
 import * as keys from "./keys.js";
+import * as player from "./player.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as upload from "./upload.js";
 
-const MODULES = [keys, swap, times, builder, frames, upload];
+const MODULES = [keys, swap, fold, times, builder, player, upload];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

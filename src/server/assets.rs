@@ -30,10 +30,12 @@ const ASSETS: &[Asset] = &[
     asset!("app.css", CSS),
     asset!("app.js", SCRIPT),
     asset!("builder.js", SCRIPT),
-    asset!("frames.js", SCRIPT),
+    asset!("player.js", SCRIPT),
+    asset!("fold.js", SCRIPT),
     asset!("keys.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
+    asset!("tracks.js", SCRIPT),
     asset!("upload.js", SCRIPT),
     asset!("icon.svg", "image/svg+xml"),
 ];

@@ -5,6 +5,7 @@
 //! are written there.
 #![cfg(feature = "server")]
 
+mod cards;
 mod conflict;
 mod driver;
 mod drives;
