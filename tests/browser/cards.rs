@@ -10,7 +10,7 @@ use crate::page::{Page, press, script, texts};
 use crate::teaching::begin;
 
 /// What the player of the card says.
-const PLAYER: &str = r#"
+const PLAYER: &str = r##"
     const card = document.querySelector("#answer-form");
     const slider = card.querySelector(".scrubber");
     return {
@@ -21,7 +21,7 @@ const PLAYER: &str = r#"
         speed: card.querySelector("[data-speed][aria-pressed=true]").dataset.speed,
         marked: card.querySelector(".parts-mark") !== null,
     };
-"#;
+"##;
 
 async fn player(client: &Client) -> Value {
     script(client, PLAYER).await
