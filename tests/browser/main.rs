@@ -5,6 +5,7 @@
 //! are written there.
 #![cfg(feature = "server")]
 
+mod axe;
 mod cards;
 mod conflict;
 mod driver;
