@@ -4,12 +4,13 @@
 import * as builder from "./builder.js";
 import * as fold from "./fold.js";
 import * as keys from "./keys.js";
+import * as live from "./live.js";
 import * as player from "./player.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as upload from "./upload.js";
 
-const MODULES = [keys, swap, fold, times, builder, player, upload];
+const MODULES = [keys, swap, live, fold, times, builder, player, upload];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

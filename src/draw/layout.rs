@@ -13,10 +13,13 @@ use dagre::layout::types::LabelPos;
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir};
 
 use super::curve::{LOOP_HEIGHT, Point, RADIUS};
-use super::sketch::Sketch;
+use super::sketch::{Loop, Sketch};
 
 /// The free space around a label, in pixels.
 pub(super) const PADDING: f64 = 4.0;
+
+/// The space between a circle and what stands below it, in pixels.
+pub(super) const BELOW: f64 = 4.0;
 
 /// The space between the two labels of a bundle, in pixels.
 const BETWEEN: f64 = 10.0;
@@ -54,11 +57,18 @@ pub(super) fn arrange(sketch: &Sketch) -> Plan {
             height: 2.0 * RADIUS,
             ..NodeLabel::default()
         };
-        if let Some(label) = &state.looping {
-            // Room for the loop on top, and as much below: boxes are centred.
+        // Room for the loop on top, and as much below, or the other way round:
+        // boxes are centred.
+        let mut beside: f64 = 0.0;
+        if let Some(Loop { label, .. }) = &state.looping {
             node.width = node.width.max(label.width + 2.0 * PADDING);
-            node.height += 2.0 * (LOOP_HEIGHT + label.height());
+            beside = LOOP_HEIGHT + label.height();
         }
+        if let Some(label) = &state.below {
+            node.width = node.width.max(label.width + 2.0 * PADDING);
+            beside = beside.max(BELOW + label.height());
+        }
+        node.height += 2.0 * beside;
         graph.set_node(index.to_string(), Some(node));
     }
     for (index, bundle) in bundles.iter().enumerate() {

@@ -4,11 +4,15 @@
 //! can follow it with a finger: the start at the left, accepting states with a
 //! double ring, one arrow a pair of states, loops on top, and the state from
 //! which nothing can be accepted any more left out, with a note that says so.
-//! States keep their breadth-first numbers, and the same automaton gives the
-//! same bytes, so that a picture does not jump between two answers.
+//! States have breadth-first numbers, and the same automaton gives the same
+//! bytes, so that a picture does not jump between two answers. What is new or in
+//! dispute is [marked](Marks), and states can be told [in words](phrases).
 //!
 //! # Layout
 //!
+//! - `order`: the numbers of states.
+//! - `marks`: what is otherwise in another automaton.
+//! - `phrase`: states in words.
 //! - `sketch`: which states and arrows are drawn, and what stands on them.
 //! - `layout`: where they stand; the only file that knows the layout crate.
 //! - `curve`: how an arrow runs between two circles.
@@ -18,6 +22,9 @@
 
 mod curve;
 mod layout;
+mod marks;
+mod order;
+mod phrase;
 mod ports;
 mod sketch;
 mod text;
@@ -26,6 +33,10 @@ mod write;
 use std::collections::BTreeMap;
 
 use automata::Dfa;
+
+pub use marks::Marks;
+pub use order::numbered;
+pub use phrase::phrases;
 
 /// The largest number of states that is drawn; a table serves better above it.
 pub const MAX_STATES: usize = 24;
@@ -42,6 +53,8 @@ pub struct Captions {
     pub title: Option<String>,
     /// The word that people use for a symbol, by the symbol's name.
     pub words: BTreeMap<String, String>,
+    /// Whether states are told [in words](phrases) below their circles.
+    pub phrases: bool,
 }
 
 /// An automaton that would make an unreadable picture.
@@ -62,14 +75,15 @@ pub struct TooLarge {
 /// It has no ground of its own, takes its ink from the `color` around it, and
 /// has neither `style` attributes nor a `<style>` element, so that a strict
 /// content security policy lets it through. Its hooks are the classes
-/// `automaton`, `state`, `accepting`, `arrow`, `label` and `note`, and
-/// `data-state`, `data-from` and `data-to`.
+/// `automaton`, `state`, `accepting`, `arrow`, `label`, `phrase`, `note`, `new`
+/// and `disputed`, and `data-state`, `data-from` and `data-to`, the states by
+/// their places in [`numbered`].
 ///
 /// # Errors
 ///
 /// If the automaton is larger than [`MAX_STATES`] and [`MAX_ARROWS`] allow.
-pub fn svg(dfa: &Dfa, captions: &Captions) -> Result<String, TooLarge> {
-    draw(dfa, captions, write::Form::Element)
+pub fn svg(dfa: &Dfa, captions: &Captions, marks: &Marks) -> Result<String, TooLarge> {
+    draw(dfa, captions, marks, write::Form::Element)
 }
 
 /// The picture as a file of its own: with a ground, and with light and dark
@@ -79,11 +93,16 @@ pub fn svg(dfa: &Dfa, captions: &Captions) -> Result<String, TooLarge> {
 ///
 /// As [`svg`].
 pub fn document(dfa: &Dfa, captions: &Captions) -> Result<String, TooLarge> {
-    draw(dfa, captions, write::Form::Document)
+    draw(dfa, captions, &Marks::default(), write::Form::Document)
 }
 
-fn draw(dfa: &Dfa, captions: &Captions, form: write::Form) -> Result<String, TooLarge> {
-    let sketch = sketch::Sketch::of(dfa, captions)?;
+fn draw(
+    dfa: &Dfa,
+    captions: &Captions,
+    marks: &Marks,
+    form: write::Form,
+) -> Result<String, TooLarge> {
+    let sketch = sketch::Sketch::of(dfa, captions, marks)?;
     let plan = layout::arrange(&sketch);
     Ok(write::markup(&sketch, &plan, form))
 }

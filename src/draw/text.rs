@@ -11,6 +11,9 @@ pub(super) const LINE_HEIGHT: f64 = 19.0;
 /// The width at which a label goes on in a new line, in pixels.
 const MEASURE: f64 = 150.0;
 
+/// The width at which what stands below a circle goes on in a new line.
+const NARROW: f64 = 110.0;
+
 /// The lines a label may have; what is beyond is counted in the last one.
 const MAX_LINES: usize = 5;
 
@@ -52,6 +55,34 @@ impl Label {
         }
         let width = lines.iter().map(|line| width(line)).fold(0.0, f64::max);
         Self { lines, width }
+    }
+
+    /// A phrase, broken between its words into lines of about equal length.
+    pub(super) fn wrapped(phrase: &str) -> Self {
+        let lines = (width(phrase) / NARROW).ceil().max(1.0);
+        let measure = (width(phrase) / lines).max(0.6 * NARROW);
+        let mut label = Self {
+            lines: Vec::new(),
+            width: 0.0,
+        };
+        let mut line = String::new();
+        for word in phrase.split_whitespace() {
+            if !line.is_empty() && width(&line) + 0.5 * width(word) > measure {
+                label = label.with(&std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        label.with(&line)
+    }
+
+    /// The same with one more line.
+    pub(super) fn with(mut self, line: &str) -> Self {
+        self.width = self.width.max(width(line));
+        self.lines.push(line.to_owned());
+        self
     }
 
     /// The height of all lines, in pixels.

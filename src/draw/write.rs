@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use super::curve::{Curve, HEAD, LOOP_HEIGHT, Point, RADIUS};
-use super::layout::{PADDING, Plan};
+use super::layout::{BELOW, PADDING, Plan};
+use super::marks::Mark;
 use super::ports::ports;
-use super::sketch::Sketch;
+use super::sketch::{Loop, Sketch};
 use super::text::{FONT_SIZE, LINE_HEIGHT, Label, escape, number, width};
 
 /// Said where the rejecting sink is left out.
@@ -38,13 +39,15 @@ struct Line<'a> {
     from: usize,
     to: usize,
     text: Placed<'a>,
+    marks: &'a [Mark],
 }
 
 /// Writes the picture of `sketch` at the places of `plan`.
 pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
     let lines = lines(sketch, plan);
     let entering = Curve::entering(plan.centres[0]);
-    let (low, mut high) = bounds(plan, &lines, &entering);
+    let below = below(sketch, plan);
+    let (low, mut high) = bounds(plan, &lines, &below, &entering);
     let note_at = Point::new(low.x, high.y + LINE_HEIGHT);
     if sketch.hides_sink {
         high.y = note_at.y + 0.35 * FONT_SIZE;
@@ -60,7 +63,7 @@ pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
     let id = format!("automaton-{:08x}", digest(&sketch.description));
     let mut out = String::new();
     open(&mut out, sketch, &frame, &id, form);
-    mask(&mut out, &lines, &frame, &id);
+    mask(&mut out, &lines, &below, &frame, &id);
     out.push_str("<g mask=\"url(#");
     out.push_str(&id);
     out.push_str("-labels)\" fill=\"none\">\n");
@@ -72,10 +75,12 @@ pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
             sketch.states[line.from].number,
             sketch.states[line.to].number,
         );
+        let class = classes("arrow", line.marks);
         put(
             &mut out,
-            format_args!("<g class=\"arrow\" data-from=\"{from}\" data-to=\"{to}\">"),
+            format_args!("<g class=\"{class}\" data-from=\"{from}\" data-to=\"{to}\""),
         );
+        weight(&mut out, line.marks);
         arrow(&mut out, &line.curve);
         out.push_str("</g>\n");
     }
@@ -86,10 +91,12 @@ pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
         } else {
             "state"
         };
+        let class = classes(class, &state.marks);
         put(
             &mut out,
-            format_args!("<g class=\"{class}\" data-state=\"{}\">", state.number),
+            format_args!("<g class=\"{class}\" data-state=\"{}\"", state.number),
         );
+        weight(&mut out, &state.marks);
         ring(&mut out, centre, RADIUS);
         if state.accepting {
             ring(&mut out, centre, RADIUS - RING);
@@ -102,6 +109,13 @@ pub(super) fn markup(sketch: &Sketch, plan: &Plan, form: Form) -> String {
         words(&mut out, &line.text);
     }
     out.push_str("</g>\n");
+    if !below.is_empty() {
+        out.push_str("<g class=\"phrase\" font-size=\"13.5\">\n");
+        for placed in &below {
+            words(&mut out, placed);
+        }
+        out.push_str("</g>\n");
+    }
     if sketch.hides_sink {
         out.push_str("<g class=\"note\" opacity=\"0.75\">");
         text(&mut out, note_at, "start", NOTE);
@@ -137,10 +151,11 @@ fn lines<'a>(sketch: &'a Sketch, plan: &Plan) -> Vec<Line<'a>> {
                 label: &arrow.label,
                 middle: route.label,
             },
+            marks: &arrow.marks,
         });
     }
     for (index, (state, &centre)) in sketch.states.iter().zip(&plan.centres).enumerate() {
-        if let Some(label) = &state.looping {
+        if let Some(Loop { label, marks }) = &state.looping {
             let rise = RADIUS + LOOP_HEIGHT + label.height() / 2.0;
             lines.push(Line {
                 curve: Curve::looping(centre),
@@ -150,14 +165,50 @@ fn lines<'a>(sketch: &'a Sketch, plan: &Plan) -> Vec<Line<'a>> {
                     label,
                     middle: centre - Point::new(0.0, rise),
                 },
+                marks,
             });
         }
     }
     lines
 }
 
+/// What stands below circles.
+fn below<'a>(sketch: &'a Sketch, plan: &Plan) -> Vec<Placed<'a>> {
+    let placed = (sketch.states.iter().zip(&plan.centres)).filter_map(|(state, &centre)| {
+        let label = state.below.as_ref()?;
+        let fall = RADIUS + BELOW + label.height() / 2.0;
+        let middle = centre + Point::new(0.0, fall);
+        Some(Placed { label, middle })
+    });
+    placed.collect()
+}
+
+/// A class, and those of the marks.
+fn classes(class: &str, marks: &[Mark]) -> String {
+    let marks = marks.iter().map(|mark| mark.class());
+    let classes: Vec<&str> = [class].into_iter().chain(marks).collect();
+    classes.join(" ")
+}
+
+/// Ends the tag of something marked: thicker where it is new, dashed where it is
+/// in dispute; the colour is the page's.
+fn weight(out: &mut String, marks: &[Mark]) {
+    if marks.contains(&Mark::New) {
+        out.push_str(" stroke-width=\"2.75\"");
+    }
+    if marks.contains(&Mark::Disputed) {
+        out.push_str(" stroke-dasharray=\"7 5\"");
+    }
+    out.push('>');
+}
+
 /// The corners of the smallest box around everything that is drawn.
-fn bounds(plan: &Plan, lines: &[Line<'_>], entering: &Curve) -> (Point, Point) {
+fn bounds(
+    plan: &Plan,
+    lines: &[Line<'_>],
+    below: &[Placed<'_>],
+    entering: &Curve,
+) -> (Point, Point) {
     let mut low = Point::new(f64::INFINITY, f64::INFINITY);
     let mut high = Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
     let mut cover = |point: Point, x: f64, y: f64| {
@@ -167,6 +218,9 @@ fn bounds(plan: &Plan, lines: &[Line<'_>], entering: &Curve) -> (Point, Point) {
     cover(entering.start, 0.0, 0.0);
     for &centre in &plan.centres {
         cover(centre, RADIUS, RADIUS);
+    }
+    for Placed { label, middle } in below {
+        cover(*middle, label.width / 2.0, label.height() / 2.0);
     }
     for line in lines {
         let label = line.text.label;
@@ -221,7 +275,7 @@ fn open(out: &mut String, sketch: &Sketch, frame: &Frame, id: &str, form: Form) 
 
 /// Cuts the lines under the labels away: a label then stands on the ground of
 /// whatever page the picture is in, light or dark.
-fn mask(out: &mut String, lines: &[Line<'_>], frame: &Frame, id: &str) {
+fn mask(out: &mut String, lines: &[Line<'_>], below: &[Placed<'_>], frame: &Frame, id: &str) {
     put(
         out,
         format_args!("<mask id=\"{id}-labels\" maskUnits=\"userSpaceOnUse\" "),
@@ -250,6 +304,11 @@ fn mask(out: &mut String, lines: &[Line<'_>], frame: &Frame, id: &str) {
             (label.width + 2.0 * PADDING, label.height())
         };
         out.push_str("<rect fill=\"#000000\" rx=\"4\" ");
+        rectangle(out, middle.x - x / 2.0, middle.y - y / 2.0, x, y);
+    }
+    for Placed { label, middle } in below {
+        out.push_str("<rect fill=\"#000000\" rx=\"4\" ");
+        let (x, y) = (label.width, label.height());
         rectangle(out, middle.x - x / 2.0, middle.y - y / 2.0, x, y);
     }
     out.push_str("</mask>\n");

@@ -33,6 +33,7 @@ const ASSETS: &[Asset] = &[
     asset!("player.js", SCRIPT),
     asset!("fold.js", SCRIPT),
     asset!("keys.js", SCRIPT),
+    asset!("live.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
     asset!("tracks.js", SCRIPT),

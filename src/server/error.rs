@@ -65,7 +65,8 @@ impl WebError {
             Self::Refused(
                 Refusal::Unfit { .. }
                 | Refusal::NoCounterexample { .. }
-                | Refusal::Infeasible
+                | Refusal::Infeasible { .. }
+                | Refusal::Looked { .. }
                 | Refusal::Settled { .. }
                 | Refusal::NoBound
                 | Refusal::BadBound { .. },
@@ -95,7 +96,8 @@ impl WebError {
                 Refusal::NotStanding { .. } => "no_standing_answer",
                 Refusal::Unfit { .. } => "answer_does_not_fit",
                 Refusal::NoCounterexample { .. } => "no_counterexample",
-                Refusal::Infeasible => "infeasible",
+                Refusal::Infeasible { .. } => "infeasible",
+                Refusal::Looked { .. } => "looked_at_others",
                 Refusal::Settled { .. } => "settled_beforehand",
                 Refusal::Outdated { .. } => "hypothesis_outdated",
                 Refusal::NothingToUndo => "nothing_to_undo",
@@ -125,7 +127,8 @@ impl WebError {
                 }
                 Refusal::Unfit { .. } | Refusal::Outdated { .. } => Some("answer"),
                 Refusal::NoCounterexample { .. } => Some("label"),
-                Refusal::Infeasible | Refusal::Settled { .. } => Some("word"),
+                Refusal::Infeasible { .. } | Refusal::Settled { .. } => Some("word"),
+                Refusal::Looked { .. } => Some("looked"),
                 Refusal::BadBound { .. } => Some("max_states"),
                 Refusal::NothingToUndo | Refusal::NoBound => None,
             },

@@ -4,7 +4,7 @@ use automata::Dfa;
 use automata::format::{dot, dot_people, hoa, json};
 
 use super::error::WebError;
-use crate::draw::{self, Captions};
+use crate::draw::{self, Captions, Marks};
 use crate::session::{Concept, Malformed, Task, Universe};
 
 /// A file format for automata.
@@ -136,11 +136,12 @@ pub(crate) fn concept(
 }
 
 /// The drawing to be put into a page; `None` where it would be unreadable.
-pub(crate) fn drawing(dfa: &Dfa, task: &Task) -> Option<String> {
-    draw::svg(dfa, &captions(task)).ok()
+pub(crate) fn drawing(dfa: &Dfa, task: &Task, marks: &Marks) -> Option<String> {
+    draw::svg(dfa, &captions(task), marks).ok()
 }
 
-fn captions(task: &Task) -> Captions {
+/// The words of a drawing.
+pub(crate) fn captions(task: &Task) -> Captions {
     Captions {
         title: Some(task.title.clone()),
         words: task
@@ -148,5 +149,6 @@ fn captions(task: &Task) -> Captions {
             .iter()
             .filter_map(|symbol| Some((symbol.name.clone(), symbol.word.clone()?)))
             .collect(),
+        phrases: true,
     }
 }

@@ -4,6 +4,7 @@
 //! through the layers of [`app`], a handler in `api` or `pages`, and
 //! `teaching`, which is the only way to a session.
 
+mod ahead;
 mod api;
 mod assets;
 mod behaviour;
@@ -11,9 +12,12 @@ mod chart;
 mod drive;
 mod error;
 mod export;
+mod follow;
 mod forms;
 mod guard;
+mod live;
 mod media;
+mod outlook;
 mod pages;
 mod past;
 mod practice;
@@ -151,8 +155,10 @@ pub async fn run(
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
+    let teaching = Arc::clone(&state.teaching);
     let server = axum::serve(listener, app(state)).with_graceful_shutdown(async move {
         shutdown.await;
+        teaching.live().end();
         let _ = stopping.send(());
     });
     let farewell = async {

@@ -12,11 +12,12 @@ use super::AppState;
 use super::api::session_id;
 use super::behaviour::{BehaviourView, Content};
 use super::error::{PageError, WebError};
+use super::follow::Follow;
 use super::forms::{Faults, Form};
 use super::past::PastView;
 use super::standing::{Typed, page};
 use super::views::{Bar, Shell, render};
-use super::{export, media, practice, start};
+use super::{export, live, media, outlook, practice, start};
 use crate::session::{Concept, Decision, Session};
 use crate::store::SessionId;
 
@@ -36,6 +37,8 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/changes", post(change))
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/history", get(history))
+        .route("/sessions/{id}/why", get(outlook::why))
+        .route("/sessions/{id}/live", get(live::live))
         .route(
             "/sessions/{id}/practice",
             get(practice::show).post(practice::answer),
@@ -58,7 +61,11 @@ pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {
 
 async fn show(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, PageError> {
     let id = session_id(&id)?;
-    let view = move |session: &Session| page(id, session, Typed::default());
+    let typed = Typed {
+        follows: Follow::all(&app.teaching, id).await,
+        ..Typed::default()
+    };
+    let view = move |session: &Session| page(id, session, typed);
     Ok(app.teaching.look(id, view).await?)
 }
 

@@ -139,7 +139,7 @@ impl AutomatonView {
             "delta": rows.iter().map(|row| &row.next).collect::<Vec<_>>(),
         });
         Self {
-            svg: super::export::drawing(dfa, task),
+            svg: super::export::drawing(dfa, task, &crate::draw::Marks::default()),
             symbols: symbols()
                 .map(|symbol| task.text(symbol).to_owned())
                 .collect(),

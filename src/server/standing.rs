@@ -7,6 +7,7 @@ use axum::response::{IntoResponse, Response};
 use super::behaviour::{BehaviourView, Brief, Chip, Content, chips, legend};
 use super::error::{PageError, WebError};
 use super::export;
+use super::follow::Follow;
 use super::forms::Faults;
 use super::past::{PastView, RecentView};
 use super::rule::RuleView;
@@ -145,6 +146,8 @@ pub(crate) struct Typed {
     pub(crate) atom: String,
     pub(crate) values: Vec<String>,
     pub(crate) label: String,
+    /// What would follow each way to mend a contradiction.
+    pub(crate) follows: Vec<Follow>,
 }
 
 /// The page of a session as it stands.
@@ -207,6 +210,10 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 .answers
                 .iter()
                 .filter_map(|&number| PastView::of(number, session))
+                .map(|mut past| {
+                    Follow::add_to(&typed.follows, &mut past);
+                    past
+                })
                 .collect(),
             message: session.explain(conflict),
             minimal: conflict.minimal,

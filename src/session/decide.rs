@@ -1,10 +1,14 @@
 //! What a person or a script wants to do, checked against where the session
 //! stands, and turned into the entry to append.
 
+use automata::Word;
+
 use super::event::{Event, ReplyText};
 use super::{Position, Session};
+use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
 use crate::task::{Atom, Concept, MAX_STATES, Universe};
+use crate::world::Obstacle;
 
 /// What becomes of a wish.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,9 +67,12 @@ pub enum Refusal {
     },
     /// The behaviour cannot be shown.
     #[error(
-        "this cannot happen in the world of the task, so it says nothing here: give a behaviour that can"
+        "this cannot happen in the world of the task, so it says nothing here: {why}; give a behaviour that can"
     )]
-    Infeasible,
+    Infeasible {
+        /// What stands in its way.
+        why: String,
+    },
     /// What is known beforehand says the opposite.
     #[error(
         "what is known beforehand says that this is {}, whatever is learned: give another behaviour, or have the task changed",
@@ -74,6 +81,14 @@ pub enum Refusal {
     Settled {
         /// The label that was claimed.
         label: bool,
+    },
+    /// The sheet beside the rule has another number of behaviours.
+    #[error(
+        "the sheet of this rule has {drawn} behaviours: say that all {drawn} were looked at, or leave `looked` out"
+    )]
+    Looked {
+        /// How many.
+        drawn: u32,
     },
     /// A rule shown long ago cannot be declared right afterwards.
     #[error(
@@ -97,6 +112,22 @@ pub enum Refusal {
         /// The bound as it is.
         now: usize,
     },
+}
+
+/// The replies to a question that need no further words.
+fn plain_replies(question: &Question<Atom, Concept>) -> Vec<Reply<Atom>> {
+    let compared = Reply::Compared;
+    match question {
+        Question::Membership { .. } => vec![Reply::Accept, Reply::Reject, Reply::Skip],
+        Question::Comparison { .. } => vec![
+            compared(Comparison::First),
+            compared(Comparison::Second),
+            compared(Comparison::Equal),
+            compared(Comparison::Incomparable),
+            Reply::Skip,
+        ],
+        Question::Equivalence { .. } => vec![Reply::Correct],
+    }
 }
 
 impl Session {
@@ -192,6 +223,47 @@ impl Session {
         Ok(Decision::Append(Event::Enlarged { max_states }))
     }
 
+    /// The entries that may well be appended next, those that people decide for
+    /// most often first: every answer that needs no further words, and in a
+    /// conflict all that may mend it.
+    pub fn foreseen(&self) -> Vec<Event> {
+        match self.position() {
+            Position::Thinking | Position::Done(_) => Vec::new(),
+            Position::Asking(number) => {
+                let Some(asked) = self.asked(*number) else {
+                    return Vec::new();
+                };
+                let replies = plain_replies(&asked.question).into_iter();
+                let answered = replies.map(|reply| Event::Answered {
+                    number: *number,
+                    reply: ReplyText::of(&reply, self.universe()),
+                });
+                answered.collect()
+            }
+            Position::Conflict(conflict) => {
+                let mended = conflict.answers.iter().flat_map(|&number| self.mended(number));
+                mended.collect()
+            }
+        }
+    }
+
+    /// The entries that take this answer back, or give another in its place.
+    fn mended(&self, number: u32) -> Vec<Event> {
+        let Some(asked) = self.asked(number) else {
+            return Vec::new();
+        };
+        let replies = plain_replies(&asked.question).into_iter();
+        let changes = replies
+            .filter(|reply| *reply != Reply::Skip)
+            .filter_map(|reply| match self.change(number, &reply) {
+                Ok(Decision::Append(event)) => Some(event),
+                _ => None,
+            });
+        std::iter::once(Event::Retracted { number })
+            .chain(changes)
+            .collect()
+    }
+
     /// Whether a reply fits the question of this number, which was asked.
     fn check_fit(&self, number: u32, reply: &Reply<Atom>) -> Result<(), Refusal> {
         let Some(asked) = self.asked(number) else {
@@ -232,7 +304,8 @@ impl Session {
         let mut says = self.universe().accepts(learned, atom);
         if let (Some(situation), Atom::Word(word)) = (self.situation(), atom) {
             if !situation.world.is_feasible(word) {
-                return Err(Refusal::Infeasible);
+                let why = self.hindered(word);
+                return Err(Refusal::Infeasible { why });
             }
             match situation.prior.settled(word) {
                 Some(settled) if settled != label => return Err(Refusal::Settled { label }),
@@ -243,6 +316,35 @@ impl Session {
             Err(Refusal::NoCounterexample { label })
         } else {
             Ok(())
+        }
+    }
+
+    /// What stands in the way of a word that cannot happen, as a part of a sentence.
+    fn hindered(&self, word: &Word) -> String {
+        let task = self.task();
+        let step = |place: usize, symbol| format!("step {} ({})", place + 1, task.text(symbol));
+        match self.world().and_then(|world| world.obstacle(word)) {
+            Some(Obstacle::TooLong { longest }) => {
+                format!(
+                    "it has {} steps, and at most {longest} can happen",
+                    word.len()
+                )
+            }
+            Some(Obstacle::NoWay { place, symbol }) => {
+                let step = step(place, symbol);
+                format!(
+                    "from where it is by then, no way leads to {step} without touching something else"
+                )
+            }
+            Some(Obstacle::TooFar {
+                place,
+                symbol,
+                steps,
+            }) => {
+                let step = step(place, symbol);
+                format!("a walk makes at most {steps} moves, and {step} is farther than that")
+            }
+            Some(Obstacle::NotRecorded) | None => "there is no recording of it".to_owned(),
         }
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::config::Setup;
 use crate::evidence::Comparison;
 use crate::identify::{Cause, Contradiction};
-use crate::learner::{Question, Reply, Round};
+use crate::learner::{Left, Question, Removed, Reply, Round};
 use crate::task::{Atom, AtomText, Bare, Concept, ConceptText, Task, Universe, Unreadable};
 
 /// The log's format; the first entry names it.
@@ -41,6 +41,12 @@ pub enum Event {
         /// Whether the budget ended before the best question was found.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         hurried: bool,
+        /// What was left to be learned; logs of before it was told have none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        left: Option<Left>,
+        /// What every answer would rule out.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        removed: Vec<Removed>,
     },
     /// The open question was answered.
     Answered {
@@ -173,7 +179,12 @@ pub enum ReplyText {
     /// The two cannot be compared.
     Incomparable,
     /// The rule is right.
-    Correct,
+    Correct {
+        /// How many behaviours of its sheet were looked at and found to be treated
+        /// rightly: all of them, if that is said. Older logs say nothing of it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        looked: Option<u32>,
+    },
     /// No answer.
     Skip,
     /// The rule is wrong about this behaviour.
@@ -234,7 +245,7 @@ impl ReplyText {
             Reply::Compared(Comparison::Second) => Self::Second,
             Reply::Compared(Comparison::Equal) => Self::Equal,
             Reply::Compared(Comparison::Incomparable) => Self::Incomparable,
-            Reply::Correct => Self::Correct,
+            Reply::Correct => Self::Correct { looked: None },
             Reply::Skip => Self::Skip,
             Reply::Counterexample { atom, label } => Self::Counterexample {
                 atom: universe.text(atom),
@@ -256,7 +267,7 @@ impl ReplyText {
             Self::Second => Reply::Compared(Comparison::Second),
             Self::Equal => Reply::Compared(Comparison::Equal),
             Self::Incomparable => Reply::Compared(Comparison::Incomparable),
-            Self::Correct => Reply::Correct,
+            Self::Correct { .. } => Reply::Correct,
             Self::Skip => Reply::Skip,
             Self::Counterexample { atom, label } => Reply::Counterexample {
                 atom: universe.parse(atom)?,

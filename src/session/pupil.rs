@@ -1,10 +1,13 @@
 //! The learner of a session, whatever class it learns.
 
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
 use super::Setup;
 use crate::concept::{ConceptClass, DfaClass};
 use crate::evidence::AnswerId;
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
+use crate::learner::{Counts, Learner, Outlook, Question, Reply, Round, Step};
 use crate::task::{Atom, Concept, Task, Universe};
 
 /// A learner that is told and asks in the words of every class.
@@ -24,8 +27,24 @@ pub(super) trait Pupil: Send {
 
     fn counts(&self) -> Counts;
 
+    /// What was left as the last question was put, if it was by `next`.
+    fn outlook(&self) -> Option<Outlook<Concept>>;
+
+    /// Another learner that was told the same.
+    fn fork(&self) -> Box<dyn Pupil>;
+
     /// What nothing that can be shown tells about this hypothesis.
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom>;
+
+    /// Independent draws by which this hypothesis can be checked, and from what;
+    /// from a stream of the seed that is this question's alone.
+    fn draw(
+        &self,
+        hypothesis: &Concept,
+        count: usize,
+        seed: u64,
+        question: u64,
+    ) -> Option<(Vec<Atom>, String)>;
 }
 
 /// A learner that was told no answer yet.
@@ -77,7 +96,7 @@ pub(super) fn new(
 
 impl<C> Pupil for Learner<C>
 where
-    C: ConceptClass + Send,
+    C: ConceptClass + Clone + Send + 'static,
     C::Atom: TryFrom<Atom> + Send,
     C::Concept: TryFrom<Concept> + Send,
     Atom: From<C::Atom>,
@@ -122,9 +141,38 @@ where
         Learner::counts(self)
     }
 
+    fn outlook(&self) -> Option<Outlook<Concept>> {
+        let outlook = Learner::outlook(self)?.clone();
+        Some(Outlook {
+            left: outlook.left,
+            removed: outlook.removed,
+            rivals: outlook.rivals.map(|rivals| rivals.map(Concept::from)),
+        })
+    }
+
+    fn fork(&self) -> Box<dyn Pupil> {
+        Box::new(self.clone())
+    }
+
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom> {
         let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
         self.class().beyond(&hypothesis).map(Atom::from)
+    }
+
+    fn draw(
+        &self,
+        hypothesis: &Concept,
+        count: usize,
+        seed: u64,
+        question: u64,
+    ) -> Option<(Vec<Atom>, String)> {
+        let hypothesis = C::Concept::try_from(hypothesis.clone()).ok()?;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        // The learner draws from streams that lack one of the two highest bits.
+        random.set_stream(question | 0b11 << 62);
+        let drawn = self.class().draw(&hypothesis, count, &mut random);
+        let atoms = drawn.into_iter().map(Atom::from).collect();
+        Some((atoms, self.class().drawn_from(&hypothesis)))
     }
 }
 

@@ -7,6 +7,7 @@
 
 pub mod grid;
 mod machine;
+mod obstacle;
 pub mod pool;
 mod shown;
 mod words;
@@ -16,6 +17,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::grid::{ATTEMPTS, Cell, Grid, Step};
 use self::machine::Machine;
+pub use self::obstacle::Obstacle;
 use self::pool::{Pool, Recording};
 pub use self::shown::Shown;
 pub use self::words::Words;

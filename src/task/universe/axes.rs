@@ -24,7 +24,14 @@ pub struct Axis {
 impl Axis {
     /// The number at a coordinate, 0 at the best and 1 at the worst.
     pub fn value(&self, coordinate: f64) -> f64 {
-        self.best + coordinate * (self.worst - self.best)
+        let range = self.worst - self.best;
+        // Twelve digits of the range: more than any grid has points, and fewer than
+        // sums of binary fractions get wrong.
+        let digits = 12.0 - range.abs().log10().floor();
+        let scale = 10f64.powi(digits.clamp(-300.0, 300.0) as i32);
+        let value = self.best + coordinate * range;
+        let rounded = (value * scale).round() / scale;
+        if rounded.is_finite() { rounded } else { value }
     }
 
     fn coordinate(&self, value: f64) -> f64 {
@@ -302,6 +309,20 @@ mod tests {
                 assert_eq!(axes.point(&read), Ok(point));
             }
         }
+    }
+
+    #[test]
+    fn numbers_have_no_tail_of_digits() {
+        let axes = drive();
+        for ticks in 0..=14 {
+            let point = Point::new(vec![0, ticks], 14);
+            let text = axes.values(&point)[1].to_string();
+            assert!(text.len() <= 3, "{text}");
+        }
+        assert_eq!(
+            axes.values(&Point::new(vec![1, 14], 14))[1].to_string(),
+            "0.2"
+        );
     }
 
     #[test]

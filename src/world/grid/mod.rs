@@ -318,6 +318,14 @@ impl Grid {
         self.steps
     }
 
+    /// The same grid with walks of any length.
+    pub(super) fn tireless(&self) -> Self {
+        Self {
+            steps: usize::MAX,
+            ..self.clone()
+        }
+    }
+
     fn stride(&self) -> usize {
         self.columns + 1
     }
