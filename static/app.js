@@ -2,16 +2,17 @@
 // whenever another `<main>` takes its place.
 
 import * as builder from "./builder.js";
-import * as frames from "./frames.js";
+import * as fold from "./fold.js";
 import * as keys from "./keys.js";
 import * as live from "./live.js";
 import * as paint from "./paint.js";
+import * as player from "./player.js";
 import * as studio from "./studio.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as upload from "./upload.js";
 
-const MODULES = [keys, swap, live, times, builder, frames, upload, paint, studio];
+const MODULES = [keys, swap, live, fold, times, builder, player, upload, paint, studio];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

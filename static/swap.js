@@ -86,7 +86,8 @@ const arrive = (page, address, direct = false) => {
   scrollTo(0, 0);
   focus(next);
   const count = document.querySelector(".bar-count")?.textContent.trim();
-  say([next.querySelector("h1")?.textContent.trim(), count].filter(Boolean).join(". "));
+  const asked = next.querySelector("h1")?.textContent.trim();
+  say([asked, count && `${count}.`].filter(Boolean).join(" "));
 };
 
 // The page that came; none where it is no page of this build of the site, whose

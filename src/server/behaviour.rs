@@ -12,6 +12,7 @@ use crate::task::{Axes, BehaviourText, Picture};
 use crate::world::{Trajectory, World};
 
 /// A symbol as a chip.
+#[derive(Clone)]
 pub(crate) struct Chip {
     pub(crate) name: String,
     pub(crate) text: String,
@@ -83,6 +84,43 @@ pub(crate) struct FeatureView {
     pub(crate) steps: Vec<String>,
 }
 
+/// A behaviour in a line.
+pub(crate) enum Brief {
+    /// A word by the tiles of its symbols.
+    Word { names: String, chips: Vec<Chip> },
+    /// Anything else by its name or its numbers.
+    Text(String),
+}
+
+impl Brief {
+    pub(crate) fn of(atom: &Atom, session: &Session) -> Self {
+        let Atom::Word(word) = atom else {
+            return Self::Text(session.universe().spell(atom));
+        };
+        if word.is_empty() {
+            return Self::Text(session.task().empty.clone());
+        }
+        let symbols = chips(session.task());
+        let chips: Vec<Chip> = word
+            .iter()
+            .map(|symbol| symbols[symbol.index()].clone())
+            .collect();
+        let texts: Vec<&str> = chips.iter().map(|chip| chip.text.as_str()).collect();
+        Self::Word {
+            names: texts.join(", "),
+            chips,
+        }
+    }
+}
+
+/// What the colours of a world mean; nothing where no world is drawn.
+pub(crate) fn legend(session: &Session) -> Vec<Chip> {
+    match session.world() {
+        Some(World::Grid(_)) => chips(session.task()),
+        _ => Vec::new(),
+    }
+}
+
 /// The number of tones that the style sheet has.
 const TONES: usize = 8;
 
@@ -118,10 +156,18 @@ impl BehaviourView {
 
     /// Both, with what they do not share marked.
     pub(crate) fn pair(first: &Atom, second: &Atom, session: &Session) -> (Self, Self) {
-        (
-            Self::beside(first, Some(second), session),
-            Self::beside(second, Some(first), session),
-        )
+        let mut first_view = Self::beside(first, Some(second), session);
+        let mut second_view = Self::beside(second, Some(first), session);
+        if let (Some(first), Some(second)) = (first_view.drawn(), second_view.drawn()) {
+            Scene::part(first, second);
+        }
+        (first_view, second_view)
+    }
+
+    /// What is drawn of it cell by cell.
+    fn drawn(&mut self) -> Option<&mut Scene> {
+        let recorded = self.recording.as_mut().and_then(|r| r.cells.as_mut());
+        self.scene.as_mut().or(recorded)
     }
 
     fn beside(atom: &Atom, other: Option<&Atom>, session: &Session) -> Self {

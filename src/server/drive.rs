@@ -37,6 +37,8 @@ pub(crate) struct Drive {
     pub(crate) parked: f64,
     /// The ends of the gap between them.
     pub(crate) gap: (f64, f64),
+    /// How long it takes, as a number.
+    pub(crate) lasts: f64,
     /// Time and distance with their units.
     pub(crate) time: String,
     pub(crate) distance: String,
@@ -78,6 +80,7 @@ impl Drive {
         }
         let (step, count) = marks(values[0], time.best.max(time.worst));
         let middle = at(0.5);
+        let lasts = values[0].abs();
         let (time, distance) = (time.spell(values[0]), distance.spell(values[1]));
         Self {
             way,
@@ -90,6 +93,7 @@ impl Drive {
             label: format!(
                 "A drive that takes {time} and keeps {distance} away from the parked car."
             ),
+            lasts,
             time,
             distance,
         }
@@ -105,6 +109,7 @@ impl Drive {
             y: LANE,
             parked: LANE,
             gap: (LANE, LANE),
+            lasts: 0.0,
             time: String::new(),
             distance: String::new(),
             label: String::new(),

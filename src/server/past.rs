@@ -1,6 +1,6 @@
 //! Standing answers, and how they could be mended.
 
-use super::behaviour::BehaviourView;
+use super::behaviour::{BehaviourView, Brief};
 use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
 use crate::session::{Atom, ReplyText, Session};
@@ -15,6 +15,43 @@ pub(crate) struct PastView {
     pub(crate) others: Vec<Choice>,
     /// What would follow if it was withdrawn, where that was worked out.
     pub(crate) withdrawn: Option<String>,
+}
+
+/// How many of the last answers are within reach while answering.
+const RECENT: usize = 10;
+
+/// A standing answer in a line.
+pub(crate) struct RecentView {
+    pub(crate) number: u32,
+    pub(crate) first: Option<Brief>,
+    pub(crate) second: Option<Brief>,
+    pub(crate) said: &'static str,
+}
+
+impl RecentView {
+    /// The last ones, the latest first.
+    pub(crate) fn last(session: &Session) -> Vec<Self> {
+        let standing = session.standing();
+        let latest = standing.iter().rev().take(RECENT);
+        let brief = |atom: &Atom| Some(Brief::of(atom, session));
+        let view = |number: u32, reply: &Reply<Atom>| {
+            let (first, second) = match (&session.asked(number)?.question, reply) {
+                (Question::Membership { atom }, _) => (brief(atom), None),
+                (Question::Comparison { first, second }, _) => (brief(first), brief(second)),
+                (Question::Equivalence { .. }, Reply::Counterexample { atom, .. }) => {
+                    (brief(atom), None)
+                }
+                (Question::Equivalence { .. }, _) => (None, None),
+            };
+            Some(Self {
+                number,
+                first,
+                second,
+                said: said(reply),
+            })
+        };
+        latest.filter_map(|s| view(s.number, &s.reply)).collect()
+    }
 }
 
 /// An answer that could be given instead.

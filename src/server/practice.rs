@@ -6,7 +6,7 @@ use axum::response::Response;
 
 use super::AppState;
 use super::api::session_id;
-use super::behaviour::{BehaviourView, Content};
+use super::behaviour::{BehaviourView, Chip, Content, legend};
 use super::error::{PageError, WebError};
 use super::forms::plain_reply;
 use super::pages::{Fields, read_form};
@@ -24,6 +24,8 @@ struct PracticePage {
     first: BehaviourView,
     second: Option<BehaviourView>,
     verdict: Option<Verdict>,
+    /// What the colours of the world mean.
+    legend: Vec<Chip>,
 }
 
 /// What becomes of an answer.
@@ -69,6 +71,7 @@ fn page(id: SessionId, session: &Session, answer: Option<&str>) -> Result<Respon
         first,
         second,
         verdict,
+        legend: legend(session),
     }))
 }
 

@@ -2,7 +2,7 @@
 //! letters, and the way
 //! from the start to the token, numbered where it touches a tile.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use automata::Symbol;
@@ -24,6 +24,19 @@ const PASSES: [(i32, i32); 7] = [
     (-10, 0),
 ];
 
+/// Where the numbers of the touches of one tile stand, from its middle: none hides
+/// another, nor the tile's letter.
+const BADGES: [(i32, i32); 8] = [
+    (11, 11),
+    (11, 0),
+    (11, -11),
+    (0, 11),
+    (-11, 11),
+    (-11, 0),
+    (0, -11),
+    (0, 0),
+];
+
 /// A drawing.
 pub(crate) struct Scene {
     pub(crate) width: i32,
@@ -38,6 +51,13 @@ pub(crate) struct Scene {
     pub(crate) headings: Vec<Place>,
     /// Where it touches tiles.
     pub(crate) touches: Vec<TouchView>,
+    /// Where it is after each step, as `x,y,angle` with spaces between.
+    pub(crate) points: String,
+    /// The cells that it passes.
+    cells: Vec<Cell>,
+    /// Where the other of a pair goes another way: the number of the last step that
+    /// both share, and the place.
+    pub(crate) parting: Option<(usize, Place)>,
     pub(crate) start: Place,
     pub(crate) token: Place,
     pub(crate) steps: usize,
@@ -64,7 +84,12 @@ pub(crate) struct Look {
 /// A touched tile, with its number on the way.
 pub(crate) struct TouchView {
     pub(crate) number: usize,
+    /// The step that touches it.
+    pub(crate) step: usize,
+    /// Where the number stands.
     pub(crate) at: Place,
+    /// What stands there.
+    pub(crate) text: String,
 }
 
 /// A point, and the angle of what is there, clockwise from the right.
@@ -128,16 +153,22 @@ impl Scene {
             way: String::new(),
             headings: Vec::new(),
             touches: Vec::new(),
+            points: format!("{},{},0", start.x, start.y),
+            cells: vec![from],
+            parting: None,
             start,
             token: start,
             steps: strides.len(),
         };
         let mut before = None;
-        for stride in strides {
+        let mut badges = Badges::default();
+        for (step, stride) in strides.enumerate() {
             let mut to = passes.point(stride.to);
             to.angle = stride.angle.unwrap_or(scene.token.angle);
             // Writing to a string never fails.
             let _ = write!(way, " L{} {}", to.x, to.y);
+            let _ = write!(scene.points, " {},{},{}", to.x, to.y, to.angle);
+            scene.cells.push(stride.to);
             if stride.angle.is_some() && before != Some(stride.angle) {
                 scene.headings.push(Place {
                     x: i32::midpoint(scene.token.x, to.x),
@@ -147,13 +178,79 @@ impl Scene {
             }
             if stride.touches {
                 let number = scene.touches.len() + 1;
-                scene.touches.push(TouchView { number, at: to });
+                scene.touches.push(TouchView {
+                    number,
+                    step: step + 1,
+                    at: badges.place(stride.to),
+                    text: number.to_string(),
+                });
             }
             scene.token = to;
             before = Some(stride.angle);
         }
         scene.way = way;
+        badges.tell(&mut scene.touches);
         scene
+    }
+
+    /// Marks where the two go different ways, if they do after a common beginning.
+    pub(crate) fn part(first: &mut Self, second: &mut Self) {
+        let cells = first.cells.iter().zip(&second.cells);
+        let shared = cells.take_while(|(a, b)| a == b).count();
+        if shared == 0 || shared == first.cells.len().max(second.cells.len()) {
+            return;
+        }
+        let last = shared - 1;
+        for scene in [first, second] {
+            let place = Place {
+                x: middle(scene.cells[last].column),
+                y: middle(scene.cells[last].row),
+                angle: 0,
+            };
+            scene.parting = Some((last, place));
+        }
+    }
+}
+
+/// The middle of the cells of a row or a column.
+fn middle(place: usize) -> i32 {
+    units(place) + SIDE / 2
+}
+
+/// How many numbers each cell has.
+#[derive(Default)]
+struct Badges(BTreeMap<Cell, usize>);
+
+impl Badges {
+    /// Where the next number of the cell stands.
+    fn place(&mut self, cell: Cell) -> Place {
+        let count = self.0.entry(cell).or_default();
+        let (x, y) = BADGES[(*count).min(BADGES.len() - 1)];
+        *count += 1;
+        Place {
+            x: middle(cell.column) + x,
+            y: middle(cell.row) + y,
+            angle: 0,
+        }
+    }
+
+    /// Where a cell has more numbers than places, the last place says from which on.
+    fn tell(&self, touches: &mut Vec<TouchView>) {
+        if self.0.values().all(|count| *count <= BADGES.len()) {
+            return;
+        }
+        let mut seen = BTreeSet::new();
+        touches.retain(|touch| seen.insert((touch.at.x, touch.at.y)));
+        for (cell, count) in &self.0 {
+            if *count <= BADGES.len() {
+                continue;
+            }
+            let (x, y) = BADGES[BADGES.len() - 1];
+            let at = (middle(cell.column) + x, middle(cell.row) + y);
+            for touch in touches.iter_mut().filter(|t| (t.at.x, t.at.y) == at) {
+                touch.text = format!("{}+", touch.number);
+            }
+        }
     }
 }
 
@@ -185,8 +282,8 @@ impl Passes {
         let (x, y) = PASSES[*pass % PASSES.len()];
         *pass += 1;
         Place {
-            x: units(cell.column) + SIDE / 2 + x,
-            y: units(cell.row) + SIDE / 2 + y,
+            x: middle(cell.column) + x,
+            y: middle(cell.row) + y,
             angle: 0,
         }
     }

@@ -4,12 +4,12 @@
 use askama::Template;
 use axum::response::{IntoResponse, Response};
 
-use super::behaviour::{BehaviourView, Chip, Content, chips};
+use super::behaviour::{BehaviourView, Brief, Chip, Content, chips, legend};
 use super::error::{PageError, WebError};
 use super::export;
 use super::follow::Follow;
 use super::forms::Faults;
-use super::past::PastView;
+use super::past::{PastView, RecentView};
 use super::rule::RuleView;
 use super::views::{Bar, Shell, render};
 use crate::learner::{Counts, Question, Reply};
@@ -28,6 +28,10 @@ struct QuestionPage {
     first: BehaviourView,
     second: Option<BehaviourView>,
     hurried: bool,
+    /// What the colours of the world mean.
+    legend: Vec<Chip>,
+    /// The last answers.
+    recent: Vec<RecentView>,
 }
 
 #[derive(Template)]
@@ -194,6 +198,8 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 first,
                 second,
                 hurried: asked.hurried,
+                legend: legend(session),
+                recent: RecentView::last(session),
             })
         }
         Position::Conflict(conflict) => render(&ConflictPage {

@@ -41,6 +41,8 @@ pub(crate) struct Wishes {
     pub(crate) without_script: bool,
     /// Pages are shown in their dark colours.
     pub(crate) dark: bool,
+    /// Motion is welcome.
+    pub(crate) moving: bool,
     /// The width and height of a page in pixels, if they matter.
     pub(crate) size: Option<(u32, u32)>,
 }
@@ -188,13 +190,15 @@ fn capabilities(folder: &Path, wishes: Wishes) -> Capabilities {
         "--disable-features=BackForwardCache,RenderDocument",
         "--no-first-run",
         "--hide-scrollbars",
-        "--force-prefers-reduced-motion",
         "--force-color-profile=srgb",
     ]
     .map(str::to_owned)
     .into();
     arguments.push(format!("--user-data-dir={}", folder.join("user").display()));
     arguments.push(format!("--window-size={width},{height}"));
+    if !wishes.moving {
+        arguments.push("--force-prefers-reduced-motion".to_owned());
+    }
     if wishes.dark {
         arguments.push("--blink-settings=preferredColorScheme=0".to_owned());
     }

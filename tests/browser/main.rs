@@ -5,6 +5,8 @@
 //! are written there.
 #![cfg(feature = "server")]
 
+mod axe;
+mod cards;
 mod conflict;
 mod driver;
 mod drives;

@@ -178,7 +178,7 @@ async fn seen(client: &Client) -> BTreeSet<String> {
             const images = [...card.querySelectorAll(".recording img")].filter((image) => image.checkVisibility());
             const video = card.querySelector(".recording video");
             const loaded = images.every((image) => image.complete && image.naturalWidth > 0);
-            if (card.querySelector(".player")) return loaded && images.length === 1 && "player";
+            if (card.querySelector(".one-by-one")) return loaded && images.length === 1 && "player";
             if (card.querySelector(".frames")) return loaded && images.length === 4 && "strip";
             const canvas = card.querySelector(".recording canvas");
             if (canvas) return canvas.width > 0 && "animation";
@@ -301,22 +301,25 @@ async fn recordings_are_sent_seen_and_taught_by() {
         press(client, ".sessions a").await;
         press(client, "#history-link").await;
         let player = wait("a player", async || {
-            client.find(Locator::Css(".player")).await.ok()
+            client
+                .find(Locator::Css(".player:has(.one-by-one):not(:has(video))"))
+                .await
+                .ok()
         })
         .await;
         let count = player.find(Locator::Css(".count")).await.unwrap();
-        assert_eq!(count.text().await.unwrap(), "1 / 4");
+        assert_eq!(count.text().await.unwrap(), "Step 0 of 3");
         let slider = player
             .find(Locator::Css("input[type=range]"))
             .await
             .unwrap();
         slider.send_keys("\u{e014}").await.unwrap();
-        assert_eq!(count.text().await.unwrap(), "2 / 4");
-        let play = player.find(Locator::Css("button")).await.unwrap();
-        assert_eq!(play.text().await.unwrap(), "Play");
+        assert_eq!(count.text().await.unwrap(), "Step 1 of 3");
+        let play = player.find(Locator::Css(".play-button")).await.unwrap();
+        assert!(play.text().await.unwrap().starts_with("Play"));
         play.click().await.unwrap();
         wait("the last picture", async || {
-            (count.text().await.ok()? == "4 / 4").then_some(())
+            (count.text().await.ok()? == "Step 3 of 3").then_some(())
         })
         .await;
     })
