@@ -6,9 +6,11 @@ import * as frames from "./frames.js";
 import * as keys from "./keys.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
+import * as trace from "./trace.js";
 import * as upload from "./upload.js";
+import * as walk from "./walk.js";
 
-const MODULES = [keys, swap, times, builder, frames, upload];
+const MODULES = [keys, swap, times, trace, builder, walk, frames, upload];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

@@ -34,7 +34,9 @@ const ASSETS: &[Asset] = &[
     asset!("keys.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
+    asset!("trace.js", SCRIPT),
     asset!("upload.js", SCRIPT),
+    asset!("walk.js", SCRIPT),
     asset!("icon.svg", "image/svg+xml"),
 ];
 
