@@ -5,6 +5,7 @@
 //! are written there.
 #![cfg(feature = "server")]
 
+mod check;
 mod conflict;
 mod driver;
 mod drives;
