@@ -4,13 +4,14 @@
 import * as builder from "./builder.js";
 import * as frames from "./frames.js";
 import * as keys from "./keys.js";
+import * as live from "./live.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
 import * as trace from "./trace.js";
 import * as upload from "./upload.js";
 import * as walk from "./walk.js";
 
-const MODULES = [keys, swap, times, trace, builder, walk, frames, upload];
+const MODULES = [keys, swap, live, times, trace, builder, walk, frames, upload];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::concept::{Cause, ConceptClass, Contradiction};
 use crate::evidence::AnswerId;
 use crate::learner::{
-    Counts, EQUIVALENCE_COST, Learner, Progress, Question, Reply, ReplyError, Step,
+    Counts, EQUIVALENCE_COST, Learner, Left, Progress, Question, Reply, ReplyError, Step,
 };
 use crate::oracle::Teacher;
 
@@ -20,6 +20,8 @@ pub struct Asked<'a, A, C> {
     pub reply: &'a Reply<A>,
     /// How far the check has come before this question, if it belongs to one.
     pub check: Option<&'a Progress>,
+    /// What was left to be learned, where that is known.
+    pub left: Option<Left>,
     /// The contradictions met since the question before.
     pub conflicts: &'a [Dropped],
 }
@@ -157,6 +159,7 @@ where
                 hurried,
             } => {
                 let check = learner.conformance();
+                let left = learner.outlook().map(|outlook| outlook.left);
                 if number == max_questions {
                     // In a check, it is the check that ends too early.
                     report.check = check.cloned();
@@ -174,6 +177,7 @@ where
                         question: &question,
                         reply: &reply,
                         check,
+                        left,
                         conflicts: &std::mem::take(&mut report.conflicts),
                     });
                     (reply, number < max_questions)

@@ -17,6 +17,7 @@ const SHORTER: usize = 1000;
 
 /// All regular languages over an alphabet: the concepts are minimal automata,
 /// the atoms words, and the size is the number of states.
+#[derive(Clone)]
 pub struct DfaClass {
     alphabet: Alphabet,
     identifier: Identifier,

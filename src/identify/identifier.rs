@@ -25,6 +25,7 @@ const SEARCHED: usize = 64;
 
 /// An incremental search for the smallest consistent automata: facts come and
 /// go, and what was learned from the others is kept.
+#[derive(Clone)]
 pub struct Identifier {
     settings: Settings,
     problem: Problem,
@@ -239,6 +240,13 @@ struct Engines {
     enumerator: Enumerator,
     varisat: Option<Box<dyn Engine + Send>>,
     batsat: Option<Box<dyn Engine + Send>>,
+}
+
+impl Clone for Engines {
+    /// None made: an engine keeps nothing that shows in what it finds.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Engines {

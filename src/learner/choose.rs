@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::exp4::{COMPARISON, MEMBERSHIP};
 use super::experts::{Losses, PosteriorAdvice, Round};
+use super::outlook::Weighed;
 use super::selection::{CONCEPTS, Candidates, Compare, Judge, select};
 use super::{Learner, Question, Step, Strategy};
 use crate::concept::{ConceptClass, Failure};
@@ -75,6 +76,15 @@ impl<C: ConceptClass> Learner<C> {
                 ask(question, round, hurried)
             }
         };
+        if let Step::Ask { question, .. } = &step {
+            let count = sample.concepts.len();
+            let weighed = Weighed {
+                concepts: &sample.concepts,
+                weights: &vec![1.0 / count as f64; count],
+                exact: sample.complete,
+            };
+            self.outlook = Some(self.outlook_on(question, &weighed));
+        }
         (step, simplest)
     }
 

@@ -231,6 +231,7 @@ impl fmt::Display for Claim<'_> {
 }
 
 /// A check on its way.
+#[derive(Clone)]
 pub(super) struct Check<A> {
     /// The first agreement with the concept.
     opened: AnswerId,

@@ -13,6 +13,7 @@ mod dialogue;
 mod exp4;
 mod experts;
 mod known;
+mod outlook;
 mod selection;
 
 use std::hash::Hash;
@@ -25,10 +26,12 @@ pub use self::dialogue::{Counts, Entry, Question, Reply, ReplyError, Step};
 use self::experts::Bandit;
 pub use self::experts::{Losses, PosteriorAdvice, Round};
 use self::known::Known;
+pub use self::outlook::{Answer, Expected, Left, Outlook, Removed};
 use crate::concept::ConceptClass;
 use crate::evidence::{AnswerId, Fact};
 
 /// The learner: evidence in, question out.
+#[derive(Clone)]
 pub struct Learner<C: ConceptClass> {
     class: C,
     config: Config,
@@ -45,6 +48,8 @@ pub struct Learner<C: ConceptClass> {
     simplest: Option<C::Concept>,
     /// What seems wrong, where answers may be.
     doubts: Option<Doubts>,
+    /// What was left when the last question was put.
+    outlook: Option<Outlook<C::Concept>>,
     check: Option<Check<C::Atom>>,
     /// Whether the last step was made by the check.
     checking: bool,
@@ -66,6 +71,7 @@ impl<C: ConceptClass> Learner<C> {
             next: None,
             simplest: None,
             doubts: None,
+            outlook: None,
             check: None,
             checking: false,
         };
@@ -132,6 +138,7 @@ impl<C: ConceptClass> Learner<C> {
             return step.clone();
         }
         self.doubts = None;
+        self.outlook = None;
         self.checking = false;
         let (step, simplest) = self.choose();
         self.next = Some(step.clone());
@@ -166,6 +173,13 @@ impl<C: ConceptClass> Learner<C> {
     /// of the last [`Self::next`]; none where answers count as facts.
     pub fn doubts(&self) -> Option<&Doubts> {
         self.doubts.as_ref()
+    }
+
+    /// What was left, and what the answers would tell, when the last
+    /// [`Self::next`] put its question; none where it put none, and where its
+    /// budget ended before the concepts were known.
+    pub fn outlook(&self) -> Option<&Outlook<C::Concept>> {
+        self.outlook.as_ref()
     }
 
     /// What can be learned.

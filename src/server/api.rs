@@ -43,6 +43,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/automaton", get(automaton))
         .route("/sessions/{id}/concept", get(concept))
         .route("/sessions/{id}/log", get(log))
+        .route("/sessions/{id}/live", get(super::live::live))
 }
 
 fn read_body(body: Body) -> Result<Value, WebError> {
@@ -153,6 +154,10 @@ fn describe(session: &Session, position: &Position) -> Value {
             }
             if asked.hurried {
                 value["hurried"] = true.into();
+            }
+            if let Some(left) = &asked.left {
+                value["left"] = json!(left);
+                value["removed"] = json!(asked.removed);
             }
             value
         }

@@ -32,6 +32,7 @@ const ASSETS: &[Asset] = &[
     asset!("builder.js", SCRIPT),
     asset!("frames.js", SCRIPT),
     asset!("keys.js", SCRIPT),
+    asset!("live.js", SCRIPT),
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
     asset!("trace.js", SCRIPT),

@@ -5,6 +5,7 @@
 //! `teaching`, which is the only way to a session.
 
 mod again;
+mod ahead;
 mod api;
 mod assets;
 mod behaviour;
@@ -14,9 +15,12 @@ mod done;
 mod drive;
 mod error;
 mod export;
+mod follow;
 mod forms;
 mod guard;
+mod live;
 mod media;
+mod outlook;
 mod pages;
 mod past;
 mod practice;
@@ -157,8 +161,10 @@ pub async fn run(
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
+    let teaching = Arc::clone(&state.teaching);
     let server = axum::serve(listener, app(state)).with_graceful_shutdown(async move {
         shutdown.await;
+        teaching.live().end();
         let _ = stopping.send(());
     });
     let farewell = async {

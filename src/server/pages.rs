@@ -12,12 +12,13 @@ use super::AppState;
 use super::api::session_id;
 use super::behaviour::{BehaviourView, Content};
 use super::error::{PageError, WebError};
+use super::follow::Follow;
 use super::forms::{Faults, Form};
 use super::past::PastView;
 use super::spent::Spent;
 use super::standing::{Typed, View, page};
 use super::views::{Bar, Shell, render};
-use super::{again, export, media, practice, start};
+use super::{again, export, live, media, outlook, practice, start};
 use crate::learner::Reply;
 use crate::session::{Concept, Decision, Position, Session};
 use crate::store::SessionId;
@@ -39,6 +40,8 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/bound", post(enlarge))
         .route("/sessions/{id}/again", post(again::begin))
         .route("/sessions/{id}/history", get(history))
+        .route("/sessions/{id}/why", get(outlook::why))
+        .route("/sessions/{id}/live", get(live::live))
         .route(
             "/sessions/{id}/practice",
             get(practice::show).post(practice::answer),
@@ -67,7 +70,12 @@ async fn show(
     let id = session_id(&id)?;
     let mut query = query.into_iter();
     let trace = query.find_map(|(key, value)| (key == "trace").then_some(value));
+    let typed = Typed {
+        follows: Follow::all(&app.teaching, id).await,
+        ..Typed::default()
+    };
     let view = View {
+        typed,
         trace,
         spent: spent(&app, id).await?,
         ..View::default()

@@ -3,7 +3,7 @@
 use super::behaviour::BehaviourView;
 use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
-use crate::session::{Atom, Session};
+use crate::session::{Atom, ReplyText, Session};
 
 /// A standing answer, and how it could be mended.
 pub(crate) struct PastView {
@@ -13,12 +13,16 @@ pub(crate) struct PastView {
     pub(crate) second: Option<BehaviourView>,
     pub(crate) said: String,
     pub(crate) others: Vec<Choice>,
+    /// What would follow if it was withdrawn, where that was worked out.
+    pub(crate) withdrawn: Option<String>,
 }
 
 /// An answer that could be given instead.
 pub(crate) struct Choice {
     pub(crate) value: &'static str,
     pub(crate) text: &'static str,
+    /// What would follow, where that was worked out.
+    pub(crate) follows: Option<String>,
 }
 
 const JUDGEMENTS: [(&str, &str, Reply<Atom>); 2] = [
@@ -76,8 +80,13 @@ impl PastView {
             others: choices
                 .iter()
                 .filter(|(_, _, r)| r != reply)
-                .map(|&(value, text, _)| Choice { value, text })
+                .map(|&(value, text, _)| Choice {
+                    value,
+                    text,
+                    follows: None,
+                })
                 .collect(),
+            withdrawn: None,
         })
     }
 }
@@ -96,4 +105,21 @@ pub(crate) fn said(reply: &Reply<Atom>) -> &'static str {
                 .map_or("", |(_, text, _)| text)
         }
     }
+}
+
+/// The value under which a form sends this answer, if a button can.
+pub(crate) fn value(reply: &ReplyText) -> Option<&'static str> {
+    let reply = match reply {
+        ReplyText::Accept => Reply::Accept,
+        ReplyText::Reject => Reply::Reject,
+        ReplyText::First => Reply::Compared(Comparison::First),
+        ReplyText::Second => Reply::Compared(Comparison::Second),
+        ReplyText::Equal => Reply::Compared(Comparison::Equal),
+        ReplyText::Incomparable => Reply::Compared(Comparison::Incomparable),
+        _ => return None,
+    };
+    let mut choices = JUDGEMENTS.iter().chain(&COMPARISONS);
+    choices
+        .find(|(_, _, choice)| *choice == reply)
+        .map(|(value, _, _)| *value)
 }

@@ -6,6 +6,7 @@ use axum::response::{IntoResponse, Response};
 
 use super::behaviour::{BehaviourView, Content};
 use super::error::{PageError, WebError};
+use super::follow::Follow;
 use super::forms::Faults;
 use super::past::PastView;
 use super::spent::Spent;
@@ -52,6 +53,8 @@ pub(crate) struct Typed {
     pub(crate) atom: String,
     pub(crate) values: Vec<String>,
     pub(crate) label: String,
+    /// What would follow each way to mend a contradiction.
+    pub(crate) follows: Vec<Follow>,
 }
 
 /// What of a session's page is not in the session.
@@ -117,6 +120,10 @@ pub(crate) fn page(id: SessionId, session: &Session, view: View) -> Response {
                 .answers
                 .iter()
                 .filter_map(|&number| PastView::of(number, session))
+                .map(|mut past| {
+                    Follow::add_to(&typed.follows, &mut past);
+                    past
+                })
                 .collect(),
             message: session.explain(conflict),
             minimal: conflict.minimal,

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use tokio::sync::{Mutex as AsyncMutex, Semaphore};
 
+use super::ahead::{Foresight, Trial};
 use super::error::WebError;
+use super::live::Live;
 use super::upload::{Pools, Upload};
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
 use crate::store::{Entry, Listed, SessionId, Store, StoreError, StoredFile};
@@ -34,6 +36,8 @@ pub(crate) struct Teaching {
     archive: Arc<Archive>,
     loaded: Mutex<Loaded>,
     permits: Arc<Semaphore>,
+    foresight: Arc<Foresight>,
+    live: Arc<Live>,
 }
 
 #[derive(Default)]
@@ -50,6 +54,8 @@ impl Teaching {
             archive: Arc::new(Archive { store, pools }),
             loaded: Mutex::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
+            foresight: Arc::new(Foresight::new(width)),
+            live: Arc::default(),
         }
     }
 
@@ -130,6 +136,11 @@ impl Teaching {
         .await
     }
 
+    /// Who waits for news.
+    pub(crate) fn live(&self) -> &Live {
+        &self.live
+    }
+
     /// The store, for what is read piece by piece.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         Arc::clone(&self.archive.store)
@@ -157,9 +168,11 @@ impl Teaching {
         let archive = Arc::clone(&self.archive);
         let slot = self.slot(id);
         let permits = Arc::clone(&self.permits);
+        let (foresight, live) = (Arc::clone(&self.foresight), Arc::clone(&self.live));
         let work = async move {
             let mut held = slot.lock_owned().await;
-            let permit = permits.acquire_owned().await.map_err(WebError::internal)?;
+            let permit = Arc::clone(&permits).acquire_owned().await;
+            let permit = permit.map_err(WebError::internal)?;
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
@@ -168,8 +181,10 @@ impl Teaching {
                     Some(session) => session,
                     None => load(&archive, &id)?,
                 };
-                match advance(&archive, &id, &mut session, decide) {
+                match advance(&archive, &id, &mut session, decide, &foresight) {
                     Ok(position) => {
+                        live.tell(id, session.entries());
+                        foresight.prepare(id, &session, &permits);
                         let shown = view(&session, &position);
                         *held = Some(session);
                         Ok(shown)
@@ -189,6 +204,19 @@ impl Teaching {
             Ok(result) => result,
             Err(_) => Err(WebError::Slow),
         }
+    }
+
+    /// What `view` shows of every answer that was tried out on the session as it
+    /// stands with so many entries; those still to be tried are waited for, within
+    /// `patience`.
+    pub(crate) async fn survey<T>(
+        &self,
+        id: SessionId,
+        entries: u64,
+        patience: Duration,
+        view: impl Fn(&Trial) -> T,
+    ) -> Vec<T> {
+        self.foresight.survey(id, entries, patience, view).await
     }
 
     /// A session's log, as it lies in the store.
@@ -277,11 +305,16 @@ fn advance(
     id: &SessionId,
     session: &mut Session,
     decide: impl Fn(&Session) -> Result<Decision, WebError>,
+    foresight: &Foresight,
 ) -> Result<Position, WebError> {
     loop {
         let already = match decide(session)? {
             Decision::Append(event) => {
-                if !append(archive, id, session, &event)? {
+                let appended = match foresight.take(*id, session, &event) {
+                    Some(trial) => adopt(archive, id, session, trial)?,
+                    None => append(archive, id, session, &event)?,
+                };
+                if !appended {
                     continue;
                 }
                 None
@@ -298,6 +331,28 @@ fn advance(
     }
 }
 
+/// Appends the entries of a trial to the store, and goes on with its session; if
+/// another writer was faster with the first, reads the session again instead and
+/// says `false`.
+fn adopt(
+    archive: &Archive,
+    id: &SessionId,
+    session: &mut Session,
+    trial: Trial,
+) -> Result<bool, WebError> {
+    let causes = std::iter::once(&trial.cause);
+    let first = session.entries();
+    for (event, seq) in causes.chain(&trial.effects).zip(first..) {
+        if !keep(archive, id, seq, event)? {
+            *session = load(archive, id)?;
+            // After the first the answer is there, whoever wrote what follows.
+            return Ok(seq > first);
+        }
+    }
+    *session = trial.session;
+    Ok(true)
+}
+
 /// Appends an entry to the store, then to the session; if another writer was
 /// faster, reads the session again instead and says `false`.
 fn append(
@@ -306,16 +361,21 @@ fn append(
     session: &mut Session,
     event: &Event,
 ) -> Result<bool, WebError> {
+    if keep(archive, id, session.entries(), event)? {
+        session.apply(event).map_err(WebError::Corrupt)?;
+        Ok(true)
+    } else {
+        *session = load(archive, id)?;
+        Ok(false)
+    }
+}
+
+/// Appends an entry to the store; `false` if another writer was faster.
+fn keep(archive: &Archive, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
     let body = serde_json::to_string(event).map_err(WebError::internal)?;
-    match archive.store.append(id, session.entries(), &body) {
-        Ok(()) => {
-            session.apply(event).map_err(WebError::Corrupt)?;
-            Ok(true)
-        }
-        Err(StoreError::Taken { .. }) => {
-            *session = load(archive, id)?;
-            Ok(false)
-        }
+    match archive.store.append(id, seq, &body) {
+        Ok(()) => Ok(true),
+        Err(StoreError::Taken { .. }) => Ok(false),
         Err(error) => Err(WebError::internal(error)),
     }
 }

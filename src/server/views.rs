@@ -7,6 +7,7 @@ use axum::response::{Html, IntoResponse, Response};
 
 use super::assets;
 use super::error::WebError;
+use super::outlook::LeftView;
 use crate::session::Session;
 
 /// What every page has around its content.
@@ -42,10 +43,14 @@ pub(crate) struct Bar {
     pub(crate) id: String,
     pub(crate) title: String,
     pub(crate) answered: usize,
+    /// The entries of its log: another page shows the same if they are as many.
+    pub(crate) entries: u64,
     /// Paragraph by paragraph.
     pub(crate) guidelines: Vec<String>,
     /// Whether there is a question to practise with.
     pub(crate) practice: bool,
+    /// What is left to be learned, while a question is open.
+    pub(crate) left: Option<LeftView>,
     /// The last standing answer.
     pub(crate) undo: Option<u32>,
 }
@@ -58,8 +63,10 @@ impl Bar {
             id,
             title: task.title.clone(),
             answered: (counts.membership + counts.comparison + counts.equivalence) as usize,
+            entries: session.entries(),
             guidelines: paragraphs(&task.guidelines),
             practice: task.practice.is_some(),
+            left: LeftView::of(session),
             undo: session.standing().last().map(|s| s.number),
         }
     }

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::behaviour::chips;
 use super::scene::{Look, Scene};
-use crate::session::Session;
+use crate::session::{Session, SymbolText};
 use crate::world::World;
 use crate::world::grid::{Cell, Grid, Tile};
 
@@ -32,7 +32,9 @@ impl WalkView {
                 colour: chip.colour,
             })
             .collect();
-        let texts: Vec<&str> = session.task().symbols.iter().map(|s| s.text()).collect();
+        let texts: Vec<&str> = (session.task().symbols.iter())
+            .map(SymbolText::text)
+            .collect();
         let start = grid.starts().next()?;
         Some(Self {
             scene: Scene::of(grid, start, &[], &looks),

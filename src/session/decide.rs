@@ -5,6 +5,7 @@ use automata::Word;
 
 use super::event::{Event, ReplyText};
 use super::{Position, Session};
+use crate::evidence::Comparison;
 use crate::learner::{Question, Reply};
 use crate::task::{Atom, Concept, MAX_STATES, Universe};
 use crate::world::Obstacle;
@@ -113,6 +114,22 @@ pub enum Refusal {
     },
 }
 
+/// The replies to a question that need no further words.
+fn plain_replies(question: &Question<Atom, Concept>) -> Vec<Reply<Atom>> {
+    let compared = Reply::Compared;
+    match question {
+        Question::Membership { .. } => vec![Reply::Accept, Reply::Reject, Reply::Skip],
+        Question::Comparison { .. } => vec![
+            compared(Comparison::First),
+            compared(Comparison::Second),
+            compared(Comparison::Equal),
+            compared(Comparison::Incomparable),
+            Reply::Skip,
+        ],
+        Question::Equivalence { .. } => vec![Reply::Correct],
+    }
+}
+
 impl Session {
     /// Somebody answers the question of this number.
     ///
@@ -204,6 +221,50 @@ impl Session {
             return Err(Refusal::BadBound { now });
         }
         Ok(Decision::Append(Event::Enlarged { max_states }))
+    }
+
+    /// The entries that may well be appended next, those that people decide for
+    /// most often first: every answer that needs no further words, and in a
+    /// conflict all that may mend it.
+    pub fn foreseen(&self) -> Vec<Event> {
+        match self.position() {
+            Position::Thinking | Position::Done(_) => Vec::new(),
+            Position::Asking(number) => {
+                let Some(asked) = self.asked(*number) else {
+                    return Vec::new();
+                };
+                let replies = plain_replies(&asked.question).into_iter();
+                let answered = replies.map(|reply| Event::Answered {
+                    number: *number,
+                    reply: ReplyText::of(&reply, self.universe()),
+                });
+                answered.collect()
+            }
+            Position::Conflict(conflict) => {
+                let mended = conflict
+                    .answers
+                    .iter()
+                    .flat_map(|&number| self.mended(number));
+                mended.collect()
+            }
+        }
+    }
+
+    /// The entries that take this answer back, or give another in its place.
+    fn mended(&self, number: u32) -> Vec<Event> {
+        let Some(asked) = self.asked(number) else {
+            return Vec::new();
+        };
+        let replies = plain_replies(&asked.question).into_iter();
+        let changes = replies
+            .filter(|reply| *reply != Reply::Skip)
+            .filter_map(|reply| match self.change(number, &reply) {
+                Ok(Decision::Append(event)) => Some(event),
+                _ => None,
+            });
+        std::iter::once(Event::Retracted { number })
+            .chain(changes)
+            .collect()
     }
 
     /// Whether a reply fits the question of this number, which was asked.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::config::Setup;
 use crate::evidence::Comparison;
 use crate::identify::{Cause, Contradiction};
-use crate::learner::{Question, Reply, Round};
+use crate::learner::{Left, Question, Removed, Reply, Round};
 use crate::task::{Atom, AtomText, Bare, Concept, ConceptText, Task, Universe, Unreadable};
 
 /// The log's format; the first entry names it.
@@ -41,6 +41,12 @@ pub enum Event {
         /// Whether the budget ended before the best question was found.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         hurried: bool,
+        /// What was left to be learned; logs of before it was told have none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        left: Option<Left>,
+        /// What every answer would rule out.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        removed: Vec<Removed>,
     },
     /// The open question was answered.
     Answered {

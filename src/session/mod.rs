@@ -29,7 +29,7 @@ pub use samples::{Claim, RISK, SHEET, Samples};
 use self::pupil::Pupil;
 use crate::evidence::AnswerId;
 use crate::identify::Contradiction;
-use crate::learner::{Counts, Question, Reply, Round, Step};
+use crate::learner::{Counts, Left, Question, Removed, Reply, Round, Step};
 pub use crate::task::{
     Atom, AtomText, Automaton, Concept, ConceptText, DEFAULT_STATES, Example, Fields, MAX_EXAMPLES,
     MAX_STATES, MAX_SYMBOLS, MAX_WORD, Malformed, SymbolText, Task, Universe, read_word,
@@ -43,6 +43,10 @@ pub struct Asked {
     pub question: Question<Atom, Concept>,
     /// Whether the budget ended before the best one was found.
     pub hurried: bool,
+    /// What was left to be learned as it was put, where that is known.
+    pub left: Option<Left>,
+    /// How many of the concepts left every answer would rule out.
+    pub removed: Vec<Removed>,
     round: Option<Round>,
 }
 
@@ -191,6 +195,8 @@ impl Session {
                 question,
                 round,
                 hurried,
+                left,
+                removed,
             } => {
                 self.expect_thinking()?;
                 if *number != self.next_number() {
@@ -200,6 +206,8 @@ impl Session {
                 let asked = Asked {
                     question,
                     hurried: *hurried,
+                    left: *left,
+                    removed: removed.clone(),
                     round: round.clone(),
                 };
                 self.asked.insert(*number, asked);
@@ -276,12 +284,20 @@ impl Session {
                 question,
                 round,
                 hurried,
-            } => Event::Asked {
-                number: self.next_number(),
-                question: QuestionText::of(&question, &self.universe),
-                round,
-                hurried,
-            },
+            } => {
+                let (left, removed) = match self.learner.outlook() {
+                    Some(outlook) => (Some(outlook.left), outlook.removed),
+                    None => (None, Vec::new()),
+                };
+                Event::Asked {
+                    number: self.next_number(),
+                    question: QuestionText::of(&question, &self.universe),
+                    round,
+                    hurried,
+                    left,
+                    removed,
+                }
+            }
             Step::Conflict(contradiction) => Event::Conflict {
                 conflict: self.conflict(&contradiction),
             },
@@ -289,6 +305,34 @@ impl Session {
                 hypothesis: self.universe.rule(&hypothesis),
             },
         })
+    }
+
+    /// A session that stands where this one does, to try out what would follow.
+    #[must_use]
+    pub fn fork(&self) -> Self {
+        Self {
+            task: self.task.clone(),
+            setup: self.setup.clone(),
+            universe: self.universe.clone(),
+            learner: self.learner.fork(),
+            asked: self.asked.clone(),
+            standing: self.standing.clone(),
+            withdrawn: self.withdrawn.clone(),
+            position: self.position.clone(),
+            awaiting: self.awaiting,
+            entries: self.entries,
+        }
+    }
+
+    /// Two concepts that the open question tells apart, the likeliest first; none
+    /// where no question is open, and where there is only one. Takes as long as
+    /// [`Self::think`], unless that was just done.
+    pub fn rivals(&mut self) -> Option<[Concept; 2]> {
+        if !matches!(self.position, Position::Asking(_)) {
+            return None;
+        }
+        self.learner.next();
+        self.learner.outlook()?.rivals
     }
 
     /// A contradiction of this session: only automata have a bound that can be raised.

@@ -7,7 +7,7 @@ use super::Setup;
 use crate::concept::{ConceptClass, DfaClass};
 use crate::evidence::AnswerId;
 use crate::identify::{EngineChoice, Settings};
-use crate::learner::{Counts, Learner, Question, Reply, Round, Step};
+use crate::learner::{Counts, Learner, Outlook, Question, Reply, Round, Step};
 use crate::task::{Atom, Concept, Task, Universe};
 
 /// A learner that is told and asks in the words of every class.
@@ -26,6 +26,12 @@ pub(super) trait Pupil: Send {
     fn retract(&mut self, answer: AnswerId) -> bool;
 
     fn counts(&self) -> Counts;
+
+    /// What was left as the last question was put, if it was by `next`.
+    fn outlook(&self) -> Option<Outlook<Concept>>;
+
+    /// Another learner that was told the same.
+    fn fork(&self) -> Box<dyn Pupil>;
 
     /// What nothing that can be shown tells about this hypothesis.
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom>;
@@ -90,7 +96,7 @@ pub(super) fn new(
 
 impl<C> Pupil for Learner<C>
 where
-    C: ConceptClass + Send,
+    C: ConceptClass + Clone + Send + 'static,
     C::Atom: TryFrom<Atom> + Send,
     C::Concept: TryFrom<Concept> + Send,
     Atom: From<C::Atom>,
@@ -133,6 +139,19 @@ where
 
     fn counts(&self) -> Counts {
         Learner::counts(self)
+    }
+
+    fn outlook(&self) -> Option<Outlook<Concept>> {
+        let outlook = Learner::outlook(self)?.clone();
+        Some(Outlook {
+            left: outlook.left,
+            removed: outlook.removed,
+            rivals: outlook.rivals.map(|rivals| rivals.map(Concept::from)),
+        })
+    }
+
+    fn fork(&self) -> Box<dyn Pupil> {
+        Box::new(self.clone())
     }
 
     fn beyond(&self, hypothesis: &Concept) -> Option<Atom> {

@@ -135,7 +135,7 @@ async fn the_keyboard_alone_is_enough() {
                         strike_key(browser, &word).await;
                         if word.is_empty() {
                             // Nothing was typed, so that nothing was chosen.
-                            tab_to(browser, "input[name=label]").await;
+                            tab_to(browser, "#counterexample input[name=label]").await;
                             let choose = if label { Key::Space } else { Key::Down };
                             strike_key(browser, &named(choose)).await;
                         }

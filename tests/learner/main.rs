@@ -13,6 +13,7 @@ mod hurried;
 mod implied;
 mod monotone;
 mod order;
+mod outlook;
 mod refusals;
 mod robust;
 mod teacher;

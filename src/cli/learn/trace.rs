@@ -7,7 +7,7 @@ use super::teller::Teller;
 use crate::bench::{Asked, Dropped};
 use crate::cli::output::{self, Key, Nouns, Output};
 use crate::evidence::{AnswerId, Comparison};
-use crate::learner::{Question, Reply};
+use crate::learner::{Left, Question, Reply};
 use crate::world::Shown;
 
 /// One line of the trace for programs; words stand under `word`, and the atoms of
@@ -40,6 +40,9 @@ struct Line<'a, A, C> {
     /// The number of the check that the question belongs to.
     #[serde(skip_serializing_if = "Option::is_none")]
     check: Option<u32>,
+    /// What was left to be learned as the question was put.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left: Option<Left>,
 }
 
 /// One line about answers that contradict each other.
@@ -132,6 +135,7 @@ pub(super) fn line<L: Teller>(
         atom_shown: None,
         label: None,
         check: asked.check.map(|check| check.round),
+        left: asked.left,
     };
     match asked.question {
         Question::Membership { atom } => {

@@ -14,7 +14,7 @@ const SIGNED: usize = 192;
 
 /// The classes met so far. They save work and change no answer: to be told apart
 /// or not does not depend on who else was met.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Classes {
     known: HashMap<Dfa, usize>,
     /// By the labels of the first words of the catalogue.
@@ -25,7 +25,7 @@ pub(super) struct Classes {
 }
 
 /// The concepts that the first words of the catalogue do not tell apart.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Group {
     /// The first, while it is the only one: there is no need to look further.
     lone: Option<Member>,
@@ -34,6 +34,7 @@ struct Group {
 }
 
 /// One concept of a class, with the number of the class.
+#[derive(Clone)]
 struct Member {
     dfa: Dfa,
     class: usize,
@@ -41,7 +42,7 @@ struct Member {
 }
 
 /// What a concept says of the first of the telling words.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Told(Vec<bool>);
 
 impl Told {

@@ -32,12 +32,13 @@ const LONGEST: usize = 10;
 /// A concept is the learned part alone; [`Self::whole`] is what it comes to. Facts
 /// about settled words say of it what [`Prior::apply`] tells. Whoever hands facts
 /// over sees to it that their words are feasible.
+#[derive(Clone)]
 pub struct Situated {
     world: Arc<World>,
     prior: Prior,
     /// Has every word that is feasible and open, and few others.
     frame: Dfa,
-    catalogue: Catalogue,
+    catalogue: Arc<Catalogue>,
     classes: Classes,
     learned: Reduced,
     /// The answers that contradict what is known beforehand, and none for what was
@@ -67,7 +68,7 @@ impl Situated {
             Some(outline) => product(&outline, prior.open(), |can, open| can && open).minimise(),
             None => prior.open().clone(),
         };
-        let catalogue = Catalogue::new(&world, prior.open());
+        let catalogue = Arc::new(Catalogue::new(&world, prior.open()));
         if catalogue.words().is_empty() {
             return Err(PriorError::NothingOpenHere);
         }

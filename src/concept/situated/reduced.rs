@@ -11,6 +11,7 @@ use crate::evidence::{AnswerId, Budget, Fact};
 use crate::identify::Settings;
 
 /// Automata that do not move on symbols that do not matter.
+#[derive(Clone)]
 pub(super) struct Reduced {
     alphabet: Alphabet,
     settings: Settings,

@@ -17,6 +17,7 @@ const UNITS: u64 = 20_000;
 const CHOICE: usize = 16;
 
 /// All certain facts, and the size that they are known to need.
+#[derive(Clone)]
 pub(super) struct Guide {
     problem: Problem,
     standing: Vec<FactId>,

@@ -10,6 +10,7 @@ mod shape;
 mod visits;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use automata::{Alphabet, Word};
 use rand::{RngExt, SeedableRng};
@@ -55,6 +56,7 @@ const HOPELESS: f64 = 6.0;
 const LARGEST: usize = 40;
 
 /// The chains, and what they have heard.
+#[derive(Clone)]
 pub(crate) struct Particles {
     symbols: usize,
     seed: u64,
@@ -65,8 +67,8 @@ pub(crate) struct Particles {
     belief: Belief,
     guide: Guide,
     /// The stage at the start and after every answer, so that an answer can be
-    /// taken back.
-    past: Vec<Stage>,
+    /// taken back; clones share what they have in common.
+    past: Vec<Arc<Stage>>,
     /// The consistent automata met since the last answer, with their shares of the
     /// posterior, up to a number that all share.
     met: BTreeMap<Table, f64>,
@@ -99,11 +101,11 @@ impl Particles {
             script: Script::new(symbols),
             belief: Belief::new(0),
             guide: Guide::new(alphabet.clone()),
-            past: vec![Stage {
+            past: vec![Arc::new(Stage {
                 places,
                 at_least: 1,
                 astray: 0,
-            }],
+            })],
             met: BTreeMap::new(),
         }
     }
@@ -141,7 +143,7 @@ impl Particles {
             }
             self.belief = Belief::new(self.script.len());
             let (stage, met) = self.travel();
-            self.past.push(stage);
+            self.past.push(Arc::new(stage));
             self.met = met;
         }
     }

@@ -17,6 +17,7 @@ use self::atoms::Table;
 pub use self::doubts::{Doubt, Doubts};
 use self::posterior::Posterior;
 use super::choose::{Move, ask, equivalence};
+use super::outlook::Weighed;
 use super::{Learner, Question, Step, Strategy};
 use crate::belief::Heard;
 use crate::concept::{ConceptClass, Failure, Wish};
@@ -58,6 +59,7 @@ impl<C: ConceptClass> Learner<C> {
                 other => (other, simplest),
             };
         }
+        let (exact, known) = (spread.exact, spread.concepts.len());
         let posterior = Posterior::new(spread);
         let top = posterior.concepts[0].clone();
         let table = Table::new(self, &posterior, &heard, &mut random);
@@ -71,21 +73,27 @@ impl<C: ConceptClass> Learner<C> {
         };
         let mut arms = value::best(self, &table, wrong);
         let better = value::better::<C>(&arms);
-        let Some((arm, worth)) = better.and_then(|arm| Some((arm, arms[arm].as_ref()?.1))) else {
-            return (ask(equivalence(&top), None, false), Some(top));
-        };
-        if price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong) {
-            return (ask(equivalence(&top), None, false), Some(top));
-        }
-        for (question, _) in arms.iter_mut().flatten() {
-            mirror(question, &mut random);
-        }
-        let chosen = if self.config.strategy == Strategy::Exp4Plus {
-            self.bet_on_arms(&table, arms, arm, &mut random)
-        } else {
-            arms[arm].take().map(|(question, _)| (question, None))
-        };
+        let better = better.and_then(|arm| Some((arm, arms[arm].as_ref()?.1)));
+        let worth_asking = better.filter(|&(_, worth)| {
+            !price::is_worth_showing(&self.config, posterior.weights[0], worth, wrong)
+        });
+        let chosen = worth_asking.and_then(|(arm, _)| {
+            for (question, _) in arms.iter_mut().flatten() {
+                mirror(question, &mut random);
+            }
+            if self.config.strategy == Strategy::Exp4Plus {
+                self.bet_on_arms(&table, arms, arm, &mut random)
+            } else {
+                arms[arm].take().map(|(question, _)| (question, None))
+            }
+        });
         let (question, round) = chosen.unwrap_or_else(|| (equivalence(&top), None));
+        let weighed = Weighed {
+            concepts: &posterior.concepts,
+            weights: &posterior.weights,
+            exact: exact && posterior.concepts.len() == known,
+        };
+        self.outlook = Some(self.outlook_on(&question, &weighed));
         (ask(question, round, false), Some(top))
     }
 
@@ -118,7 +126,7 @@ fn mirror<A, K>(question: &mut Question<A, K>, random: &mut ChaCha8Rng) {
 }
 
 /// Entropy of a distribution in bits.
-fn entropy(chances: &[f64]) -> f64 {
+pub(super) fn entropy(chances: &[f64]) -> f64 {
     -chances
         .iter()
         .filter(|chance| **chance > 0.0)

@@ -1,0 +1,188 @@
+//! What would follow every answer, worked out while a person still looks at the
+//! question. Must not write: only an answer that was given is appended.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::{Semaphore, watch};
+
+use crate::session::{Event, Session};
+use crate::store::SessionId;
+
+/// For so many sessions answers are worked out at the same time, those that were
+/// looked at last.
+const SESSIONS: usize = 32;
+
+/// An answer that might be given, and where it leads.
+pub(crate) struct Trial {
+    /// The entry that would be appended.
+    pub(crate) cause: Event,
+    /// The entries that the learner would append after it.
+    pub(crate) effects: Vec<Event>,
+    /// The session after all of them.
+    pub(crate) session: Session,
+}
+
+impl Trial {
+    /// Where this entry leads; none if it makes no sense here.
+    fn of(session: &Session, cause: Event) -> Option<Self> {
+        let mut session = session.fork();
+        session.apply(&cause).ok()?;
+        let mut effects = Vec::new();
+        while let Some(effect) = session.think() {
+            session.apply(&effect).ok()?;
+            effects.push(effect);
+        }
+        Some(Self {
+            cause,
+            effects,
+            session,
+        })
+    }
+}
+
+/// What is worked out about a session as it stands.
+struct Ahead {
+    /// The number of entries of its log.
+    entries: u64,
+    trials: Mutex<Vec<Trial>>,
+    /// Whether all trials were made.
+    ended: watch::Sender<bool>,
+    /// Whether nobody wants them any more.
+    stale: AtomicBool,
+}
+
+/// The trials of the sessions looked at last.
+pub(crate) struct Foresight {
+    sessions: Mutex<VecDeque<(SessionId, Arc<Ahead>)>>,
+    /// Trials leave a core to those who wait, if there is more than one.
+    spare: Arc<Semaphore>,
+}
+
+impl Foresight {
+    /// On a machine on which so many sessions think at the same time.
+    pub(crate) fn new(width: usize) -> Self {
+        Self {
+            sessions: Mutex::default(),
+            spare: Arc::new(Semaphore::new((width / 2).max(1))),
+        }
+    }
+
+    /// Begins to work out what may follow, unless that was begun already. Trials
+    /// take their turns at `permits` with everybody's work.
+    pub(crate) fn prepare(&self, id: SessionId, session: &Session, permits: &Arc<Semaphore>) {
+        let foreseen = session.foreseen();
+        let Some(ahead) = self.open(id, session.entries(), foreseen.is_empty()) else {
+            return;
+        };
+        let mut session = session.fork();
+        let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
+        tokio::spawn(async move {
+            for event in foreseen {
+                let turn = (
+                    spare.acquire().await,
+                    Arc::clone(&permits).acquire_owned().await,
+                );
+                let ((Ok(_spare), Ok(permit)), false) = (turn, ahead.stale.load(Ordering::Relaxed))
+                else {
+                    break;
+                };
+                let trial = tokio::task::spawn_blocking(move || {
+                    let _permit = permit;
+                    (Trial::of(&session, event), session)
+                });
+                match trial.await {
+                    Ok((trial, back)) => {
+                        session = back;
+                        ahead.trials().extend(trial);
+                    }
+                    Err(panic) => {
+                        tracing::error!(%panic, "a trial failed");
+                        break;
+                    }
+                }
+            }
+            ahead.ended.send_replace(true);
+        });
+    }
+
+    /// A place for new trials; none where they were begun already, or there is
+    /// nothing to try.
+    fn open(&self, id: SessionId, entries: u64, nothing: bool) -> Option<Arc<Ahead>> {
+        let mut sessions = self.sessions();
+        if let Some(place) = sessions.iter().position(|(known, _)| *known == id) {
+            if sessions[place].1.entries == entries {
+                return None;
+            }
+            sessions.remove(place).inspect(|(_, old)| old.give_up());
+        }
+        if nothing {
+            return None;
+        }
+        if sessions.len() >= SESSIONS {
+            sessions.pop_front().inspect(|(_, old)| old.give_up());
+        }
+        let ahead = Arc::new(Ahead {
+            entries,
+            trials: Mutex::default(),
+            ended: watch::Sender::new(false),
+            stale: AtomicBool::new(false),
+        });
+        sessions.push_back((id, Arc::clone(&ahead)));
+        Some(ahead)
+    }
+
+    /// The trial of this entry, if it was made of the session as it stands. The
+    /// others are of no use after it.
+    pub(crate) fn take(&self, id: SessionId, session: &Session, cause: &Event) -> Option<Trial> {
+        let mut sessions = self.sessions();
+        let place = sessions.iter().position(|(known, _)| *known == id)?;
+        let (_, ahead) = sessions.remove(place)?;
+        ahead.give_up();
+        if ahead.entries != session.entries() {
+            return None;
+        }
+        let mut trials = ahead.trials();
+        let place = trials.iter().position(|trial| trial.cause == *cause)?;
+        Some(trials.swap_remove(place))
+    }
+
+    /// What `view` shows of every trial of the session as it stands, once all were
+    /// made or `patience` has ended.
+    pub(crate) async fn survey<T>(
+        &self,
+        id: SessionId,
+        entries: u64,
+        patience: Duration,
+        view: impl Fn(&Trial) -> T,
+    ) -> Vec<T> {
+        let ahead = {
+            let sessions = self.sessions();
+            let known = sessions.iter().find(|(known, _)| *known == id);
+            known.map(|(_, ahead)| Arc::clone(ahead))
+        };
+        let Some(ahead) = ahead.filter(|ahead| ahead.entries == entries) else {
+            return Vec::new();
+        };
+        let mut ended = ahead.ended.subscribe();
+        // What is there when time is up is shown.
+        let _ = tokio::time::timeout(patience, ended.wait_for(|ended| *ended)).await;
+        ahead.trials().iter().map(view).collect()
+    }
+
+    fn sessions(&self) -> MutexGuard<'_, VecDeque<(SessionId, Arc<Ahead>)>> {
+        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Ahead {
+    fn give_up(&self) {
+        self.stale.store(true, Ordering::Relaxed);
+    }
+
+    fn trials(&self) -> MutexGuard<'_, Vec<Trial>> {
+        self.trials.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,80 @@
+//! Tells open pages and scripts that a session has gone on: the number of entries
+//! of its log, as server-sent events.
+
+use std::collections::HashMap;
+use std::convert::Infallible;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use axum::extract::{Path, State};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use tokio::sync::watch;
+use tokio_stream::wrappers::WatchStream;
+use tokio_stream::{Stream, StreamExt};
+
+use super::AppState;
+use super::api::session_id;
+use super::error::ApiError;
+use crate::session::Session;
+use crate::store::SessionId;
+
+/// Who waits for news of which session.
+#[derive(Default)]
+pub(crate) struct Live {
+    sessions: Mutex<HashMap<SessionId, watch::Sender<u64>>>,
+}
+
+impl Live {
+    /// News of this session, which has so many entries now; the first at once.
+    pub(crate) fn follow(&self, id: SessionId, entries: u64) -> watch::Receiver<u64> {
+        let mut sessions = self.sessions();
+        let news = sessions
+            .entry(id)
+            .or_insert_with(|| watch::Sender::new(entries));
+        news.send_if_modified(|known| set(known, entries));
+        news.subscribe()
+    }
+
+    /// The session has so many entries now.
+    pub(crate) fn tell(&self, id: SessionId, entries: u64) {
+        let mut sessions = self.sessions();
+        if let Some(news) = sessions.get(&id) {
+            if news.is_closed() {
+                sessions.remove(&id);
+            } else {
+                news.send_if_modified(|known| set(known, entries));
+            }
+        }
+    }
+
+    /// Ends everybody's news: the server stops.
+    pub(crate) fn end(&self) {
+        self.sessions().clear();
+    }
+
+    fn sessions(&self) -> MutexGuard<'_, HashMap<SessionId, watch::Sender<u64>>> {
+        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Logs only grow.
+fn set(known: &mut u64, entries: u64) -> bool {
+    let is_news = entries > *known;
+    *known = entries.max(*known);
+    is_news
+}
+
+/// `GET /sessions/{id}/live`, and the same of the API: `entries` events, the
+/// first at once, until the reader goes or the server stops.
+pub(crate) async fn live(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, ApiError> {
+    let id = session_id(&id)?;
+    let entries = app.teaching.look(id, Session::entries).await?;
+    let news = WatchStream::new(app.teaching.live().follow(id, entries));
+    let events = news.map(|entries| {
+        let event = Event::default().event("entries");
+        Ok(event.data(entries.to_string()))
+    });
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()))
+}
