@@ -10,9 +10,13 @@ import * as player from "./player.js";
 import * as studio from "./studio.js";
 import * as swap from "./swap.js";
 import * as times from "./times.js";
+import * as trace from "./trace.js";
 import * as upload from "./upload.js";
+import * as walk from "./walk.js";
 
-const MODULES = [keys, swap, live, fold, times, builder, player, upload, paint, studio];
+const MODULES = [
+  keys, swap, live, fold, times, player, trace, builder, walk, upload, paint, studio,
+];
 
 swap.begin((main, signal) => {
   for (const module of MODULES) {

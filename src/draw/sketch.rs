@@ -260,11 +260,13 @@ impl Group<'_> {
         };
         for mark in self.marks() {
             let marked = self.marked(mark);
-            sentence.push_str(&if marked.len() == self.symbols.len() {
-                format!(" ({})", mark.word())
-            } else {
-                format!(" ({}: {})", mark.word(), self.words(&marked))
-            });
+            sentence.push_str(" (");
+            sentence.push_str(mark.word());
+            if marked.len() < self.symbols.len() {
+                sentence.push_str(": ");
+                sentence.push_str(&self.words(&marked));
+            }
+            sentence.push(')');
         }
         sentence.push('.');
         sentence

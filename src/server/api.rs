@@ -17,10 +17,10 @@ use super::error::{ApiError, WebError};
 use super::export::{self, Format};
 use super::forms;
 use super::upload::under_task;
-use crate::learner::Question;
+use crate::learner::{Question, Reply};
 use crate::session::{
-    Atom, Concept, Fields, MAX_STATES, Malformed, Position, QuestionText, SETUP_KEYS, Session,
-    Setup, Task, ready,
+    Atom, Concept, Fields, MAX_STATES, Malformed, Position, QuestionText, RISK, SETUP_KEYS,
+    Session, Setup, Task, ready,
 };
 use crate::store::SessionId;
 use crate::world::Shown;
@@ -34,6 +34,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions", get(list))
         .route("/sessions/{id}", get(state))
         .route("/sessions/{id}/question", get(question))
+        .route("/sessions/{id}/samples", get(samples))
         .route("/sessions/{id}/answers", post(answer))
         .route("/sessions/{id}/retractions", post(retract))
         .route("/sessions/{id}/changes", post(change))
@@ -192,15 +193,45 @@ async fn question(State(app): State<AppState>, Path(id): Path<String>) -> Answer
     Ok(Json(app.teaching.look(id, view).await?))
 }
 
+/// The behaviours beside the rule on show, and what may be claimed once all of them
+/// were looked at.
+async fn samples(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
+    let id = session_id(&id)?;
+    let view = |session: &Session| {
+        let Position::Asking(number) = *session.position() else {
+            return Err(WebError::NoAutomaton);
+        };
+        let sheet = session.samples(number).ok_or(WebError::NoAutomaton)?;
+        let bare = |atom| session.universe().text(atom).bare();
+        let samples: Vec<Value> = sheet.atoms.iter().map(bare).collect();
+        Ok(json!({
+            "question": number,
+            "samples": samples,
+            "drawn_from": sheet.drawn_from,
+            "share": sheet.claim().map(|claim| claim.share),
+            "confidence": 1.0 - RISK,
+        }))
+    };
+    Ok(Json(app.teaching.look(id, view).await??))
+}
+
 async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
     let id = session_id(&id)?;
     let body = read_body(body)?;
     let decide = move |session: &Session| {
         let fields = Fields::of(&body, "")?;
-        fields.only(&["question", "answer", session.universe().key(), "label"])?;
+        let key = session.universe().key();
+        fields.only(&["question", "answer", key, "label", "looked"])?;
         let number = forms::question_number(&fields)?;
         let reply = forms::json_reply(&fields, session.universe())?;
-        Ok(session.answer(number, &reply)?)
+        let Some(looked) = fields.whole("looked", 0, u32::MAX as usize)? else {
+            return Ok(session.answer(number, &reply)?);
+        };
+        if reply != Reply::Correct {
+            let message = "`looked` belongs to the answer `correct` alone: leave it out";
+            return Err(Malformed::new("looked", message).into());
+        }
+        Ok(session.agree(number, Some(looked as u32))?)
     };
     Ok(Json(app.teaching.act(id, decide, describe).await?))
 }

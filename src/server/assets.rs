@@ -39,7 +39,9 @@ const ASSETS: &[Asset] = &[
     asset!("swap.js", SCRIPT),
     asset!("times.js", SCRIPT),
     asset!("tracks.js", SCRIPT),
+    asset!("trace.js", SCRIPT),
     asset!("upload.js", SCRIPT),
+    asset!("walk.js", SCRIPT),
     asset!("icon.svg", "image/svg+xml"),
 ];
 

@@ -77,4 +77,9 @@ impl Chart {
             said: said.collect(),
         })
     }
+
+    /// Whether anything was said to be acceptable, or not.
+    pub(crate) fn has(&self, acceptable: bool) -> bool {
+        self.said.iter().any(|said| said.acceptable == acceptable)
+    }
 }

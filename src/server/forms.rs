@@ -291,7 +291,7 @@ fn example_label(line: &str) -> Option<(bool, &str)> {
 
 /// A word as people type it: names with spaces or commas between; where all
 /// names are single characters the spaces may be left out.
-fn typed_word(text: &str, field: &str, alphabet: &Alphabet) -> Result<Word, Malformed> {
+pub(crate) fn typed_word(text: &str, field: &str, alphabet: &Alphabet) -> Result<Word, Malformed> {
     let single = alphabet.names().all(|name| name.chars().count() == 1);
     let mut symbols = Vec::new();
     for token in text

@@ -4,11 +4,14 @@
 //! through the layers of [`app`], a handler in `api` or `pages`, and
 //! `teaching`, which is the only way to a session.
 
+mod again;
 mod ahead;
 mod api;
 mod assets;
 mod behaviour;
 mod chart;
+mod check;
+mod done;
 mod drive;
 mod error;
 mod export;
@@ -24,12 +27,15 @@ mod practice;
 mod recording;
 mod rule;
 mod scene;
+mod spent;
 mod standing;
 mod start;
 mod studio;
 mod teaching;
+mod trace;
 mod upload;
 mod views;
+mod walk;
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -155,7 +155,7 @@ impl RivalView {
         let whole = rivals.each_ref().map(|rival| session.whole(rival));
         let other = |place: usize| &whole[1 - place];
         let view = |(place, rule): (usize, &Concept)| {
-            let mut view = RuleView::of(rule, session);
+            let mut view = RuleView::of(rule, session, &Marks::default());
             if let (RuleView::Automaton(view), Concept::Automaton(one), Concept::Automaton(other)) =
                 (&mut view, rule, other(place))
             {

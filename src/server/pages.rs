@@ -3,7 +3,7 @@
 use askama::Template;
 use axum::Router;
 use axum::extract::rejection::FormRejection;
-use axum::extract::{Form as FormBody, Path, State};
+use axum::extract::{Form as FormBody, Path, Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::{get, post};
@@ -15,10 +15,12 @@ use super::error::{PageError, WebError};
 use super::follow::Follow;
 use super::forms::{Faults, Form};
 use super::past::PastView;
-use super::standing::{Typed, page};
+use super::spent::Spent;
+use super::standing::{Typed, View, page};
 use super::views::{Bar, Shell, render};
-use super::{export, live, media, outlook, practice, start};
-use crate::session::{Concept, Decision, Session};
+use super::{again, export, live, media, outlook, practice, start};
+use crate::learner::Reply;
+use crate::session::{Concept, Decision, Position, Session};
 use crate::store::SessionId;
 
 /// Where a counterexample is typed, the behaviour first.
@@ -36,6 +38,7 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/retractions", post(retract))
         .route("/sessions/{id}/changes", post(change))
         .route("/sessions/{id}/bound", post(enlarge))
+        .route("/sessions/{id}/again", post(again::begin))
         .route("/sessions/{id}/history", get(history))
         .route("/sessions/{id}/why", get(outlook::why))
         .route("/sessions/{id}/live", get(live::live))
@@ -59,14 +62,35 @@ pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {
     }
 }
 
-async fn show(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, PageError> {
+async fn show(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+    Query(query): Query<Vec<(String, String)>>,
+) -> Result<Response, PageError> {
     let id = session_id(&id)?;
+    let mut query = query.into_iter();
+    let trace = query.find_map(|(key, value)| (key == "trace").then_some(value));
     let typed = Typed {
         follows: Follow::all(&app.teaching, id).await,
         ..Typed::default()
     };
-    let view = move |session: &Session| page(id, session, typed);
+    let view = View {
+        typed,
+        trace,
+        spent: spent(&app, id).await?,
+        ..View::default()
+    };
+    let view = move |session: &Session| page(id, session, view);
     Ok(app.teaching.look(id, view).await?)
+}
+
+/// The time that a session took, once it is done.
+pub(crate) async fn spent(app: &AppState, id: SessionId) -> Result<Option<Spent>, WebError> {
+    let is_done = |session: &Session| matches!(session.position(), Position::Done(_));
+    if !app.teaching.look(id, is_done).await? {
+        return Ok(None);
+    }
+    Ok(Spent::of(&app.teaching.log(id).await?))
 }
 
 /// Does what a form asks and goes back to the session; where that is refused,
@@ -93,7 +117,12 @@ async fn act(
                     ..typed
                 },
             };
-            let view = move |session: &Session| page(id, session, typed);
+            let view = View {
+                typed,
+                spent: spent(app, id).await?,
+                ..View::default()
+            };
+            let view = move |session: &Session| page(id, session, view);
             let page = app.teaching.look(id, view).await?;
             Ok((error.status(), page).into_response())
         }
@@ -116,7 +145,11 @@ async fn answer(
     };
     let decide = move |session: &Session| {
         let reply = form.reply(session.universe())?;
-        Ok(session.answer(form.number("question")?, &reply)?)
+        let number = form.number("question")?;
+        if reply == Reply::Correct && form.has("looked") {
+            return Ok(session.agree(number, Some(form.number("looked")?))?);
+        }
+        Ok(session.answer(number, &reply)?)
     };
     act(&app, id, typed, decide).await
 }

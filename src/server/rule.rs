@@ -1,10 +1,11 @@
 //! A rule for people: an automaton drawn, limits with what was said about them, or
 //! what is acceptable by name.
 
-use automata::Dfa;
+use automata::{Dfa, StateId};
 use serde_json::json;
 
 use super::chart::Chart;
+use crate::draw::{self, Marks};
 use crate::session::{Atom, Concept, Session, Task, Universe};
 
 /// A rule for people.
@@ -34,11 +35,13 @@ pub(crate) struct ItemsView {
 }
 
 impl RuleView {
-    /// The rule of a session.
-    pub(crate) fn of(concept: &Concept, session: &Session) -> Self {
+    /// The rule of a session, with these marks on its drawing.
+    pub(crate) fn of(concept: &Concept, session: &Session, marks: &Marks) -> Self {
         let universe = session.universe();
         match (universe, concept) {
-            (_, Concept::Automaton(dfa)) => Self::Automaton(AutomatonView::of(dfa, session.task())),
+            (_, Concept::Automaton(dfa)) => {
+                Self::Automaton(AutomatonView::of(dfa, session.task(), marks))
+            }
             (Universe::Monotone(axes), Concept::Parameter(most)) => Self::Limits(LimitsView {
                 limits: axes.described(most),
                 chart: Chart::of(axes, most, session),
@@ -90,14 +93,6 @@ impl RuleView {
             Self::Limits(_) | Self::Items(_) => None,
         }
     }
-
-    /// The number of states, where it has states.
-    pub(crate) fn states(&self) -> Option<usize> {
-        match self {
-            Self::Automaton(view) => Some(view.rows.len()),
-            Self::Limits(_) | Self::Items(_) => None,
-        }
-    }
 }
 
 /// An automaton for people.
@@ -105,7 +100,10 @@ pub(crate) struct AutomatonView {
     /// The drawing, where it is not too large.
     pub(crate) svg: Option<String>,
     pub(crate) symbols: Vec<String>,
+    /// The states in the order of their numbers in the drawing.
     pub(crate) rows: Vec<RowView>,
+    /// Whether anything is marked as new.
+    pub(crate) has_new: bool,
     /// The table as JSON, for the script that tries words.
     pub(crate) machine: String,
 }
@@ -113,37 +111,56 @@ pub(crate) struct AutomatonView {
 /// A state's line in the table.
 pub(crate) struct RowView {
     pub(crate) state: usize,
-    pub(crate) start: bool,
+    /// The state in words; none where those are its number.
+    pub(crate) phrase: Option<String>,
     pub(crate) accepting: bool,
-    pub(crate) next: Vec<usize>,
+    pub(crate) is_new: bool,
+    pub(crate) next: Vec<NextView>,
+}
+
+/// Where a symbol leads.
+pub(crate) struct NextView {
+    pub(crate) state: usize,
+    pub(crate) is_new: bool,
 }
 
 impl AutomatonView {
-    fn of(dfa: &Dfa, task: &Task) -> Self {
+    fn of(dfa: &Dfa, task: &Task, marks: &Marks) -> Self {
+        let order = draw::numbered(dfa);
+        let mut number = vec![0; dfa.size()];
+        for (place, state) in order.iter().enumerate() {
+            number[state.index()] = place;
+        }
         let symbols = || dfa.alphabet().symbols();
-        let rows: Vec<RowView> = dfa
-            .states()
-            .map(|state| RowView {
-                state: state.index(),
-                start: state == dfa.start(),
-                accepting: dfa.is_accepting(state),
-                next: symbols()
-                    .map(|symbol| dfa.next(state, symbol).index())
-                    .collect(),
-            })
-            .collect();
+        let phrases = draw::phrases(dfa, &super::export::captions(task).words);
+        let row = |(place, (&state, phrase)): (usize, (&StateId, &String))| RowView {
+            state: place,
+            phrase: (!phrase.starts_with("state ")).then(|| phrase.clone()),
+            accepting: dfa.is_accepting(state),
+            is_new: marks.states().any(|marked| marked == state),
+            next: symbols()
+                .map(|symbol| NextView {
+                    state: number[dfa.next(state, symbol).index()],
+                    is_new: marks.arrows().any(|marked| marked == (state, symbol)),
+                })
+                .collect(),
+        };
+        let rows: Vec<RowView> = order.iter().zip(&phrases).enumerate().map(row).collect();
+        let delta = |row: &RowView| -> Vec<usize> { row.next.iter().map(|n| n.state).collect() };
+        let texts: Vec<&str> = symbols().map(|symbol| task.text(symbol)).collect();
         let machine = json!({
             "symbols": dfa.alphabet().names().collect::<Vec<_>>(),
-            "start": dfa.start().index(),
+            "texts": texts,
+            "start": number[dfa.start().index()],
             "accepting": rows.iter().map(|row| row.accepting).collect::<Vec<_>>(),
-            "delta": rows.iter().map(|row| &row.next).collect::<Vec<_>>(),
+            "delta": rows.iter().map(delta).collect::<Vec<_>>(),
+            "phrases": phrases,
         });
         Self {
-            svg: super::export::drawing(dfa, task, &crate::draw::Marks::default()),
-            symbols: symbols()
-                .map(|symbol| task.text(symbol).to_owned())
-                .collect(),
+            svg: super::export::drawing(dfa, task, marks),
+            symbols: texts.into_iter().map(str::to_owned).collect(),
             rows,
+            has_new: !marks.is_empty(),
             machine: machine.to_string(),
         }
     }

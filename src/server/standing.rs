@@ -4,19 +4,17 @@
 use askama::Template;
 use axum::response::{IntoResponse, Response};
 
-use super::behaviour::{BehaviourView, Brief, Chip, Content, chips, legend};
+use super::behaviour::{BehaviourView, Brief, Chip, Content, legend};
 use super::error::{PageError, WebError};
-use super::export;
 use super::follow::Follow;
 use super::forms::Faults;
 use super::past::{PastView, RecentView};
-use super::rule::RuleView;
+use super::spent::Spent;
 use super::views::{Bar, Shell, render};
-use crate::learner::{Counts, Question, Reply};
-use crate::session::{MAX_STATES, Position, Session, Universe};
+use super::{check, done};
+use crate::learner::Question;
+use crate::session::{MAX_STATES, Position, Session};
 use crate::store::SessionId;
-use crate::task::Axis;
-use crate::world::World;
 
 #[derive(Template)]
 #[template(path = "question.html")]
@@ -35,71 +33,6 @@ struct QuestionPage {
 }
 
 #[derive(Template)]
-#[template(path = "equivalence.html")]
-struct EquivalencePage {
-    shell: Shell,
-    bar: Bar,
-    notice: Option<String>,
-    number: u32,
-    rule: RuleView,
-    ask: Ask,
-    typed: String,
-    label: String,
-    faults: Faults,
-}
-
-/// How a person says what the rule treats wrongly.
-enum Ask {
-    /// By symbols.
-    Word {
-        chips: Vec<Chip>,
-        names: String,
-        empty: String,
-    },
-    /// By a number an axis.
-    Values(Vec<InputView>),
-    /// By its name.
-    Items(Vec<String>),
-}
-
-/// Where a number on an axis is typed.
-struct InputView {
-    name: String,
-    least: String,
-    most: String,
-    step: String,
-    typed: String,
-}
-
-impl Ask {
-    fn of(session: &Session, typed: &Typed) -> Self {
-        match session.universe() {
-            Universe::Words { alphabet, .. } => {
-                let names: Vec<&str> = alphabet.names().collect();
-                Self::Word {
-                    chips: chips(session.task()),
-                    names: names.join(", "),
-                    empty: session.task().empty.clone(),
-                }
-            }
-            Universe::Monotone(axes) => {
-                let input = |(place, axis): (usize, &Axis)| InputView {
-                    name: axis.name.clone(),
-                    least: axis.spell(axis.best.min(axis.worst)),
-                    most: axis.spell(axis.best.max(axis.worst)),
-                    step: axis.spell(axes.step(axis)),
-                    typed: typed.values.get(place).cloned().unwrap_or_default(),
-                };
-                Self::Values(axes.axes().iter().enumerate().map(input).collect())
-            }
-            universe @ (Universe::Finite(_) | Universe::Linear(_)) => {
-                Self::Items(universe.items().into_iter().map(str::to_owned).collect())
-            }
-        }
-    }
-}
-
-#[derive(Template)]
 #[template(path = "conflict.html")]
 struct ConflictPage {
     shell: Shell,
@@ -115,28 +48,6 @@ struct ConflictPage {
     known: bool,
 }
 
-struct Download {
-    format: &'static str,
-    title: &'static str,
-    about: &'static str,
-    href: String,
-}
-
-#[derive(Template)]
-#[template(path = "done.html")]
-struct DonePage {
-    shell: Shell,
-    bar: Bar,
-    notice: Option<String>,
-    rule: RuleView,
-    counts: Counts,
-    files: Vec<Download>,
-    agreed: Option<u32>,
-    /// What nothing that can be shown decides; and whether that is recordings.
-    beyond: Option<BehaviourView>,
-    recorded: bool,
-}
-
 /// What a person had typed when something was wrong with it.
 #[derive(Clone, Default)]
 pub(crate) struct Typed {
@@ -150,8 +61,21 @@ pub(crate) struct Typed {
     pub(crate) follows: Vec<Follow>,
 }
 
+/// What of a session's page is not in the session.
+#[derive(Clone, Default)]
+pub(crate) struct View {
+    pub(crate) typed: Typed,
+    /// The behaviour that is run through a rule on show.
+    pub(crate) trace: Option<String>,
+    /// The time that a session took which is done.
+    pub(crate) spent: Option<Spent>,
+    /// What was typed to begin the task once more.
+    pub(crate) again: Vec<(String, String)>,
+}
+
 /// The page of a session as it stands.
-pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
+pub(crate) fn page(id: SessionId, session: &Session, view: View) -> Response {
+    let typed = view.typed.clone();
     let task = session.task();
     let bar = Bar::of(id.to_string(), session);
     let shell = Shell::of(bar.clone());
@@ -162,6 +86,7 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
     // Only the page of an equivalence query has the fields to say it at.
     let notice = match showing {
         Some(Question::Equivalence { .. }) => typed.notice.clone(),
+        None if matches!(session.position(), Position::Done(_)) => typed.notice.clone(),
         _ => typed.notice.clone().or_else(|| typed.faults.message()),
     };
     match session.position() {
@@ -177,17 +102,8 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                     (first, Some(second))
                 }
                 Question::Equivalence { hypothesis } => {
-                    return render(&EquivalencePage {
-                        shell,
-                        bar,
-                        notice,
-                        number: *number,
-                        rule: RuleView::of(&session.whole(hypothesis), session),
-                        ask: Ask::of(session, &typed),
-                        typed: typed.atom,
-                        label: typed.label,
-                        faults: typed.faults,
-                    });
+                    let frame = (shell, bar, notice);
+                    return check::page(frame, (*number, hypothesis), session, view);
                 }
             };
             render(&QuestionPage {
@@ -224,52 +140,8 @@ pub(crate) fn page(id: SessionId, session: &Session, typed: Typed) -> Response {
                 .filter(|larger| *larger > task.max_states),
             known: !task.examples.is_empty(),
         }),
-        Position::Done(hypothesis) => render(&DonePage {
-            shell,
-            bar,
-            notice,
-            rule: RuleView::of(&session.whole(hypothesis), session),
-            counts: session.counts(),
-            files: downloads(id, session),
-            beyond: (session.beyond()).map(|atom| BehaviourView::of(&atom, session)),
-            recorded: matches!(session.world(), Some(World::Pool(_))),
-            agreed: session
-                .standing()
-                .iter()
-                .rev()
-                .find(|s| s.reply == Reply::Correct)
-                .map(|s| s.number),
-        }),
+        Position::Done(hypothesis) => {
+            done::page(id, (shell, bar, notice), hypothesis, session, view)
+        }
     }
-}
-
-fn downloads(id: SessionId, session: &Session) -> Vec<Download> {
-    let automaton = |&(format, title, about): &(export::Format, _, _)| Download {
-        format: format.name(),
-        title,
-        about,
-        href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
-    };
-    let rules: Vec<Download> = match session.universe() {
-        Universe::Words { .. } => export::OFFERED.iter().map(automaton).collect(),
-        Universe::Monotone(_) | Universe::Finite(_) | Universe::Linear(_) => vec![Download {
-            format: "json",
-            title: "JSON",
-            about: "the rule, for programs",
-            href: format!("/api/v1/sessions/{id}/concept"),
-        }],
-    };
-    let part = session.has_prior().then(|| Download {
-        format: "part",
-        title: "Learned part",
-        about: "as JSON, without what was known beforehand",
-        href: format!("/api/v1/sessions/{id}/automaton?part=learned"),
-    });
-    let log = Download {
-        format: "log",
-        title: "Log",
-        about: "every question and answer, one a line",
-        href: format!("/api/v1/sessions/{id}/log"),
-    };
-    rules.into_iter().chain(part).chain([log]).collect()
 }

@@ -146,7 +146,7 @@ mod tests {
     fn a_claim_is_what_the_draws_bear_out() {
         for (looked, sheet) in [(1, 1), (12, 1), (12, 2), (100, 5)] {
             let share = share(looked, sheet);
-            let risk = (1.0 - share).powi(looked as i32);
+            let risk = (1.0 - share).powf(f64::from(looked));
             let allowed = RISK / f64::from(sheet * (sheet + 1));
             assert!((risk - allowed).abs() < 1e-12, "{looked} {sheet}");
         }

@@ -7,6 +7,7 @@
 
 mod axe;
 mod cards;
+mod check;
 mod conflict;
 mod driver;
 mod drives;
@@ -137,7 +138,7 @@ async fn the_keyboard_alone_is_enough() {
                         strike_key(browser, &word).await;
                         if word.is_empty() {
                             // Nothing was typed, so that nothing was chosen.
-                            tab_to(browser, "input[name=label]").await;
+                            tab_to(browser, "#counterexample input[name=label]").await;
                             let choose = if label { Key::Space } else { Key::Down };
                             strike_key(browser, &named(choose)).await;
                         }

@@ -2,6 +2,7 @@
 #![cfg(feature = "server")]
 
 mod api;
+mod check;
 mod classes;
 mod conflicts;
 mod desk;
