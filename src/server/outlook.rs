@@ -192,7 +192,7 @@ fn page(id: SessionId, session: &Session) -> Result<Response, WebError> {
         share: 100 * removed.concepts / all.max(1),
     };
     let rivals = session.fork().rivals();
-    let bar = Bar::of(id.to_string(), session);
+    let bar = Bar::of(id, session);
     Ok(render(&WhyPage {
         shell: Shell::of(bar.clone()),
         bar,

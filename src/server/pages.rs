@@ -211,7 +211,7 @@ async fn history(
 ) -> Result<Response, PageError> {
     let id = session_id(&id)?;
     let view = move |session: &Session| {
-        let bar = Bar::of(id.to_string(), session);
+        let bar = Bar::of(id, session);
         let task = session.task();
         let known = task.examples.iter().filter_map(|example| {
             let atom = session.universe().parse(&example.atom).ok()?;

@@ -64,7 +64,7 @@ fn page(id: SessionId, session: &Session, answer: Option<&str>) -> Result<Respon
             })
         }
     };
-    let bar = Bar::of(id.to_string(), session);
+    let bar = Bar::of(id, session);
     Ok(render(&PracticePage {
         shell: Shell::of(bar.clone()),
         bar,

@@ -77,7 +77,7 @@ pub(crate) struct View {
 pub(crate) fn page(id: SessionId, session: &Session, view: View) -> Response {
     let typed = view.typed.clone();
     let task = session.task();
-    let bar = Bar::of(id.to_string(), session);
+    let bar = Bar::of(id, session);
     let shell = Shell::of(bar.clone());
     let showing = match session.position() {
         Position::Asking(number) => session.asked(*number).map(|asked| &asked.question),

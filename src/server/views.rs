@@ -9,6 +9,7 @@ use super::assets;
 use super::error::WebError;
 use super::outlook::LeftView;
 use crate::session::Session;
+use crate::store::SessionId;
 
 /// What every page has around its content.
 pub(crate) struct Shell {
@@ -40,7 +41,10 @@ impl Shell {
 /// A session's line at the top.
 #[derive(Clone)]
 pub(crate) struct Bar {
-    pub(crate) id: String,
+    /// The address of its page, below which lie its others.
+    pub(crate) home: String,
+    /// Whether who looks is one of several people, and not the owner.
+    pub(crate) invited: bool,
     pub(crate) title: String,
     pub(crate) answered: usize,
     /// The entries of its log: another page shows the same if they are as many.
@@ -56,11 +60,13 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    pub(crate) fn of(id: String, session: &Session) -> Self {
+    /// For the owner.
+    pub(crate) fn of(id: SessionId, session: &Session) -> Self {
         let task = session.task();
         let counts = session.counts();
         Self {
-            id,
+            home: format!("/sessions/{id}"),
+            invited: false,
             title: task.title.clone(),
             answered: (counts.membership + counts.comparison + counts.equivalence) as usize,
             entries: session.entries(),
@@ -68,6 +74,23 @@ impl Bar {
             practice: task.practice.is_some(),
             left: LeftView::of(session),
             undo: session.standing().last().map(|s| s.number),
+        }
+    }
+
+    /// For one of several people, who sees what they said and nothing else.
+    pub(crate) fn invited(home: String, session: &Session, person: u32) -> Self {
+        let task = session.task();
+        let answered = session.panel().answered_by(person);
+        Self {
+            home,
+            invited: true,
+            title: task.title.clone(),
+            answered: answered.len(),
+            entries: session.entries(),
+            guidelines: paragraphs(&task.guidelines),
+            practice: task.practice.is_some(),
+            left: None,
+            undo: answered.last().copied(),
         }
     }
 }
