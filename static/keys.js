@@ -39,11 +39,15 @@ export const enhance = (main, signal) => {
   const state = card?.querySelector("[data-keys-state]");
   const root = document.documentElement;
 
+  // The button that gives the keys to the card must not go before it is pressed.
+  const listens = () => {
+    const focus = document.activeElement;
+    return !store.off && card.contains(focus) && !within(focus, `${TYPING}, [data-keys-state]`);
+  };
   const tell = () => {
     root.classList.toggle("no-keys", store.off);
     if (!card) return;
-    const focus = document.activeElement;
-    const on = !store.off && card.contains(focus) && !within(focus, TYPING);
+    const on = listens();
     card.classList.toggle("keyed", on);
     if (!state) return;
     state.hidden = store.off;
@@ -64,7 +68,7 @@ export const enhance = (main, signal) => {
       if (dialog.open) dialog.close(); else dialog.showModal();
       return;
     }
-    if (store.off || dialog?.open || !card?.contains(document.activeElement)) return;
+    if (dialog?.open || !card || !listens()) return;
     const pressed = button(card, event);
     if (!pressed) return;
     event.preventDefault();
