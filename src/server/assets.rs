@@ -30,6 +30,7 @@ const ASSETS: &[Asset] = &[
     asset!("app.css", CSS),
     asset!("app.js", SCRIPT),
     asset!("builder.js", SCRIPT),
+    asset!("people.js", SCRIPT),
     asset!("player.js", SCRIPT),
     asset!("fold.js", SCRIPT),
     asset!("keys.js", SCRIPT),
