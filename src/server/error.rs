@@ -60,9 +60,10 @@ impl WebError {
 
     pub(crate) fn status(&self) -> StatusCode {
         match self {
-            Self::NoPage | Self::NoSession | Self::NotInvited | Self::Refused(Refusal::Unknown { .. }) => {
-                StatusCode::NOT_FOUND
-            }
+            Self::NoPage
+            | Self::NoSession
+            | Self::NotInvited
+            | Self::Refused(Refusal::Unknown { .. }) => StatusCode::NOT_FOUND,
             Self::NoMethod => StatusCode::METHOD_NOT_ALLOWED,
             Self::Refused(
                 Refusal::Unfit { .. }

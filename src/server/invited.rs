@@ -156,20 +156,13 @@ fn page(guest: Guest, session: &Session, leases: &Leases, notice: Option<String>
     render(&QuestionPage::of(shell, bar, notice, put, session))
 }
 
-async fn show(
-    State(app): State<AppState>,
-    Path(key): Path<String>,
-) -> Result<Response, PageError> {
+async fn show(State(app): State<AppState>, Path(key): Path<String>) -> Result<Response, PageError> {
     let guest = Guest::of(&app, &key).await?;
     Ok(put(&app, guest, None).await?)
 }
 
 /// The page with the question that comes next for this person.
-async fn put(
-    app: &AppState,
-    guest: Guest,
-    notice: Option<String>,
-) -> Result<Response, WebError> {
+async fn put(app: &AppState, guest: Guest, notice: Option<String>) -> Result<Response, WebError> {
     let leases = app.teaching.leases();
     let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
     let decide = move |session: &Session| another(session, &deciding, guest);
@@ -211,8 +204,18 @@ async fn answer(
             reply => reply,
         };
         // What a browser says of time is believed if it is some.
-        let took = form.text("took").parse().ok().filter(|took| *took < 86_400_000);
-        say(session, guest.person, form.number("question")?, &reply, took)
+        let took = form
+            .text("took")
+            .parse()
+            .ok()
+            .filter(|took| *took < 86_400_000);
+        say(
+            session,
+            guest.person,
+            form.number("question")?,
+            &reply,
+            took,
+        )
     };
     done(&app, guest, decide).await
 }

@@ -58,7 +58,9 @@ impl Leases {
             return Some(Turn::Answer(own.number));
         }
         let at_it = |number: u32| leases.iter().filter(|lease| lease.number == number).count();
-        let free = open.into_iter().find(|number| at_it(*number) < session.wanted(*number))?;
+        let free = open
+            .into_iter()
+            .find(|number| at_it(*number) < session.wanted(*number))?;
         leases.push(Lease {
             person,
             number: free,

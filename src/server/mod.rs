@@ -26,6 +26,7 @@ mod outlook;
 mod pages;
 mod past;
 mod people;
+mod people_api;
 mod practice;
 mod recording;
 mod rule;
@@ -101,6 +102,7 @@ pub fn app(state: AppState) -> Router {
     let uploads_in_time = RequestBodyDeadlineLayer::new(UPLOAD_DEADLINE);
     let new_session = Router::new().route("/sessions", post(upload::create));
     let api = api::routes()
+        .merge(people_api::routes())
         .layer(in_time.clone())
         .merge(new_session.layer(uploads_in_time.clone()))
         .fallback(async || ApiError(WebError::NoPage))

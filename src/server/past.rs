@@ -38,10 +38,14 @@ impl RecentView {
     /// The last ones of this person, the latest first.
     pub(crate) fn said_by(person: u32, session: &Session) -> Vec<Self> {
         let panel = session.panel();
-        let said = panel.answered_by(person).iter().rev().filter_map(|&number| {
-            let opinion = panel.said(person, number)?;
-            Some((number, &opinion.reply))
-        });
+        let said = panel
+            .answered_by(person)
+            .iter()
+            .rev()
+            .filter_map(|&number| {
+                let opinion = panel.said(person, number)?;
+                Some((number, &opinion.reply))
+            });
         Self::of(said, session)
     }
 

@@ -83,10 +83,9 @@ impl From<Agreement> for AgreementView {
         let two = |number: f64| format!("{number:.2}");
         Self {
             questions: agreement.questions,
-            same: agreement.same.map_or_else(
-                || "–".to_owned(),
-                |same| format!("{:.0} %", 100.0 * same),
-            ),
+            same: agreement
+                .same
+                .map_or_else(|| "–".to_owned(), |same| format!("{:.0} %", 100.0 * same)),
             kappa: agreement.kappa.map(two),
             alpha: agreement.alpha.map(two),
         }
@@ -142,7 +141,9 @@ impl PeoplePage {
             people: people.collect(),
             link,
             agreement: panel.agreement().into(),
-            disputes: disputed.filter_map(|number| Dispute::of(number, session)).collect(),
+            disputes: disputed
+                .filter_map(|number| Dispute::of(number, session))
+                .collect(),
             open: session.open().count(),
             most: MAX_ANSWERS,
             longest: MAX_NAME,
@@ -200,7 +201,11 @@ pub(crate) async fn invited(
 ) -> Result<(u32, InviteKey), WebError> {
     let decide = move |session: &Session| Ok(session.invite(&name)?);
     let view = |session: &Session, _: &_| {
-        session.panel().people().last_key_value().map(|(person, _)| *person)
+        session
+            .panel()
+            .people()
+            .last_key_value()
+            .map(|(person, _)| *person)
     };
     let person = app.teaching.act(id, decide, view).await?;
     let person = person.ok_or_else(|| WebError::internal("nobody was invited"))?;

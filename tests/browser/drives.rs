@@ -115,7 +115,11 @@ async fn a_passenger_is_understood_from_pictures_of_drives() {
                         Some((time, distance, label)) => {
                             fill(client, "#point-1", time).await;
                             fill(client, "#point-2", distance).await;
-                            press(client, &format!("#counterexample input[name=label][value=\"{label}\"]")).await;
+                            press(
+                                client,
+                                &format!("#counterexample input[name=label][value=\"{label}\"]"),
+                            )
+                            .await;
                             page.click(client, "#teach").await
                         }
                     };

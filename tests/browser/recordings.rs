@@ -212,7 +212,11 @@ async fn teach(client: &Client, reel: &Reel) -> (Page, BTreeSet<String>) {
                     Some((word, label)) => {
                         let names: Vec<&str> = alphabet.spell(&word).collect();
                         fill(client, "#word", &names.join(" ")).await;
-                        press(client, &format!("#counterexample input[name=label][value=\"{label}\"]")).await;
+                        press(
+                            client,
+                            &format!("#counterexample input[name=label][value=\"{label}\"]"),
+                        )
+                        .await;
                         page = page.click(client, "#teach").await;
                         continue;
                     }

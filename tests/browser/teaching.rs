@@ -75,7 +75,11 @@ impl Person {
                 return page.click(client, "button[value=correct]").await;
             };
             fill(client, "#word", &word).await;
-            press(client, &format!("#counterexample input[name=label][value=\"{label}\"]")).await;
+            press(
+                client,
+                &format!("#counterexample input[name=label][value=\"{label}\"]"),
+            )
+            .await;
             return page.click(client, "#teach").await;
         }
         let said = self.opinion(page);

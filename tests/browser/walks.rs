@@ -120,7 +120,11 @@ async fn the_robot_is_taught_from_drawn_walks() {
                         Some((word, label)) => {
                             let names: Vec<&str> = alphabet.spell(&word).collect();
                             fill(client, "#word", &names.join(" ")).await;
-                            press(client, &format!("#counterexample input[name=label][value=\"{label}\"]")).await;
+                            press(
+                                client,
+                                &format!("#counterexample input[name=label][value=\"{label}\"]"),
+                            )
+                            .await;
                             page.click(client, "#teach").await
                         }
                     };
