@@ -277,7 +277,9 @@ fn a_marked_sink_is_drawn() {
 /// A minimal automaton of up to so many states over two symbols.
 fn random(rng: &mut ChaCha8Rng, most: usize) -> Dfa {
     let states = rng.random_range(1..=most);
-    let accepting: Vec<usize> = (0..states).filter(|_| rng.next_u32() % 2 == 0).collect();
+    let accepting: Vec<usize> = (0..states)
+        .filter(|_| rng.next_u32().is_multiple_of(2))
+        .collect();
     let rows: Vec<[usize; 2]> = (0..states)
         .map(|_| [0; 2].map(|_| rng.random_range(0..states)))
         .collect();

@@ -51,10 +51,12 @@ impl LeftView {
 
 impl From<Left> for LeftView {
     fn from(left: Left) -> Self {
-        let (many, at_least) = match left.exact {
-            true => ("", ""),
-            false => ("more than ", "at least "),
+        let (many, at_least) = if left.exact {
+            ("", "")
+        } else {
+            ("more than ", "at least ")
         };
+        #[expect(clippy::cast_sign_loss, reason = "it is at least one")]
         let whole = |number: f64| number.round().max(1.0) as u32;
         Self {
             rules: format!("{many}{}", left.concepts),
@@ -127,9 +129,12 @@ impl Costs {
 
 /// What a rule says of a question.
 fn says(question: &Question<Atom, Concept>, rule: &Concept, session: &Session) -> String {
-    let label = |atom: &Atom| match session.universe().accepts(rule, atom) {
-        true => "acceptable",
-        false => "not acceptable",
+    let label = |atom: &Atom| {
+        if session.universe().accepts(rule, atom) {
+            "acceptable"
+        } else {
+            "not acceptable"
+        }
     };
     match question {
         Question::Membership { atom } => format!("By this rule it is {}.", label(atom)),

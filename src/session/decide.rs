@@ -12,6 +12,10 @@ use crate::task::{Atom, Concept, MAX_STATES, Universe};
 use crate::world::Obstacle;
 
 /// What becomes of a wish.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly every decision is to append, and none is kept"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Decision {
     /// It is new: append this entry.

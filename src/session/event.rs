@@ -14,6 +14,10 @@ use crate::task::{Atom, AtomText, Bare, Concept, ConceptText, Task, Universe, Un
 pub const LOG_VERSION: u32 = 1;
 
 /// One entry of a session's log.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "questions are the large entries, and half of all entries are questions"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "lowercase")]
 pub enum Event {

@@ -19,13 +19,6 @@ impl Session {
                 left,
                 removed,
             } => {
-                // Several people may have a question each.
-                if self.panel.people().is_empty() || !matches!(self.position, Position::Asking(_)) {
-                    self.expect_thinking()?;
-                }
-                if *number != self.next_number() {
-                    return Err(format!("question {number} comes out of turn"));
-                }
                 let question = question.read(&self.universe).map_err(|e| e.to_string())?;
                 let asked = Asked {
                     question,
@@ -34,12 +27,7 @@ impl Session {
                     removed: removed.clone(),
                     round: round.clone(),
                 };
-                self.asked.insert(*number, asked);
-                self.open.insert(*number);
-                if self.position == Position::Thinking {
-                    self.arrive(Position::Asking(*number));
-                }
-                Ok(())
+                self.put(*number, asked)
             }
             Event::Answered { number, reply } => {
                 if !self.open.contains(number) {
@@ -59,15 +47,7 @@ impl Session {
             }
             Event::Changed { number, reply } => {
                 let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
-                let Some(standing) = self.standing.iter_mut().find(|s| s.number == *number) else {
-                    return Err(format!("question {number} has no standing answer"));
-                };
-                standing.reply = reply;
-                standing.looked = None;
-                standing.then = None;
-                self.rebuild()?;
-                self.leave();
-                Ok(())
+                self.replace(*number, reply)
             }
             Event::Enlarged { max_states } => {
                 self.task.max_states = *max_states;
@@ -104,17 +84,13 @@ impl Session {
                 reply,
                 took,
             } => {
-                if !self.open.contains(number) {
-                    return Err(format!("question {number} is not open"));
-                }
                 let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 let opinion = Opinion {
                     person: *person,
                     reply,
                     took: *took,
                 };
-                self.panel.say(*number, opinion)?;
-                self.pool(*number)
+                self.hear(*number, opinion)
             }
             Event::Unsaid { number, person } => {
                 self.panel.unsay(*number, *person)?;
@@ -136,6 +112,31 @@ impl Session {
             Position::Thinking => Ok(()),
             _ => Err("nothing led to it".to_owned()),
         }
+    }
+
+    /// A question to one person, or to one of several, who may have one each.
+    fn put(&mut self, number: u32, asked: Asked) -> Result<(), String> {
+        if self.panel.people().is_empty() || !matches!(self.position, Position::Asking(_)) {
+            self.expect_thinking()?;
+        }
+        if number != self.next_number() {
+            return Err(format!("question {number} comes out of turn"));
+        }
+        self.asked.insert(number, asked);
+        self.open.insert(number);
+        if self.position == Position::Thinking {
+            self.arrive(Position::Asking(number));
+        }
+        Ok(())
+    }
+
+    /// What one of several people says of an open question.
+    fn hear(&mut self, number: u32, opinion: Opinion) -> Result<(), String> {
+        if !self.open.contains(&number) {
+            return Err(format!("question {number} is not open"));
+        }
+        self.panel.say(number, opinion)?;
+        self.pool(number)
     }
 
     /// The answer to an open question.
@@ -253,6 +254,19 @@ impl Session {
         } else {
             Err(format!("the learner has no answer {number} to withdraw"))
         }
+    }
+
+    /// Another answer in the place of one that stands.
+    fn replace(&mut self, number: u32, reply: Reply<Atom>) -> Result<(), String> {
+        let Some(standing) = self.standing.iter_mut().find(|s| s.number == number) else {
+            return Err(format!("question {number} has no standing answer"));
+        };
+        standing.reply = reply;
+        standing.looked = None;
+        standing.then = None;
+        self.rebuild()?;
+        self.leave();
+        Ok(())
     }
 
     /// A learner that was told the standing answers as they are now, in order.

@@ -305,13 +305,10 @@ impl Panel {
     }
 
     pub(super) fn unsay(&mut self, number: u32, person: u32) -> Result<(), String> {
-        let opinions = self.opinions.get_mut(&number).into_iter();
-        let found = opinions
-            .flat_map(|opinions| {
-                let place = opinions.iter().position(|one| one.person == person)?;
-                Some(opinions.remove(place))
-            })
-            .next();
+        let found = self.opinions.get_mut(&number).and_then(|opinions| {
+            let place = opinions.iter().position(|one| one.person == person)?;
+            Some(opinions.remove(place))
+        });
         found.ok_or_else(|| format!("person {person} has not answered question {number}"))?;
         if let Some(answered) = self.answered.get_mut(&person) {
             answered.retain(|one| *one != number);

@@ -156,6 +156,17 @@ async fn an_answer_among_the_last_ten_is_withdrawn_in_place() {
     .await;
 }
 
+/// Whether a page is no wider than its window, its answers lie in it, and the
+/// recent answers are shown.
+const LOOK: &str = r#"
+    const inside = (element) => element.getBoundingClientRect().bottom <= innerHeight + 1;
+    return [
+        document.documentElement.scrollWidth <= Math.max(innerWidth, 360),
+        [...document.querySelectorAll(".pad button")].every(inside),
+        document.querySelector(".recent").open,
+    ];
+"#;
+
 #[tokio::test]
 async fn a_phone_shows_all_without_a_sideways_scroll() {
     let wishes = Wishes {
@@ -168,14 +179,6 @@ async fn a_phone_shows_all_without_a_sideways_scroll() {
         let page = compared(browser, &house).await;
         let page = page.click(client, "#answer-form .pad button").await;
         assert_ne!(page.kind, "conflict");
-        const LOOK: &str = r#"
-            const inside = (element) => element.getBoundingClientRect().bottom <= innerHeight + 1;
-            return [
-                document.documentElement.scrollWidth <= Math.max(innerWidth, 360),
-                [...document.querySelectorAll(".pad button")].every(inside),
-                document.querySelector(".recent").open,
-            ];
-        "#;
         let look = script(client, LOOK).await;
         // A window of a browser may be wider than a phone.
         let narrow = script(client, "return innerWidth <= 640").await;
