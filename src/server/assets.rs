@@ -85,3 +85,22 @@ pub(crate) async fn get(
     )
         .into_response())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::ASSETS;
+
+    /// A block that is left open hides all that follows it from the browser.
+    #[test]
+    fn every_block_of_the_style_sheet_is_closed() {
+        let sheet = ASSETS.iter().find(|asset| asset.name == "app.css").unwrap();
+        let mut depth = 0;
+        for (number, line) in sheet.bytes.split(|byte| *byte == b'\n').enumerate() {
+            for byte in line {
+                depth += i32::from(*byte == b'{') - i32::from(*byte == b'}');
+            }
+            assert!((0..=2).contains(&depth), "line {}", number + 1);
+        }
+        assert_eq!(depth, 0);
+    }
+}
