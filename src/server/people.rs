@@ -16,7 +16,8 @@ use super::pages::{Fields, read_form};
 use super::past::{Choice, PastView, said};
 use super::views::{Bar, Shell, render};
 use crate::session::{
-    Agreement, Decision, MAX_ANSWERS, MAX_NAME, Malformed, Pooling, Session, Terms,
+    Agreement, Concept, Decision, MAX_ANSWERS, MAX_NAME, Malformed, Pooling, Position, Session,
+    Terms,
 };
 use crate::store::{InviteKey, SessionId};
 
@@ -37,6 +38,8 @@ struct PeoplePage {
     notice: Option<String>,
     terms: Terms,
     people: Vec<PersonView>,
+    /// Those who teach alone.
+    alone: Vec<AloneView>,
     /// A link that was just made: for whom, and its path. It is shown this once.
     link: Option<(String, String)>,
     agreement: AgreementView,
@@ -105,12 +108,17 @@ impl PeoplePage {
         id: SessionId,
         session: &Session,
         at_work: &[(u32, u32)],
+        alone: Vec<AloneView>,
         notice: Option<String>,
-        link: Option<(u32, InviteKey)>,
+        link: Option<Link>,
     ) -> Self {
         let bar = Bar::of(id, session);
         let panel = session.panel();
-        let people = panel.people().iter().map(|(&number, person)| {
+        let shared = panel
+            .people()
+            .iter()
+            .filter(|(_, person)| person.session.is_none());
+        let people = shared.map(|(&number, person)| {
             let record = panel.record(number);
             let at = at_work.iter().find(|(who, _)| *who == number);
             PersonView {
@@ -128,9 +136,9 @@ impl PeoplePage {
                 reliability: format!("{:.2}", record.reliability),
             }
         });
-        let link = link.and_then(|(person, key)| {
+        let link = link.and_then(|(person, path)| {
             let name = panel.people().get(&person)?.name.clone();
-            Some((name, format!("/answer/{key}")))
+            Some((name, path))
         });
         let disputed = session.open().filter(|number| panel.disagrees(*number));
         Self {
@@ -139,6 +147,7 @@ impl PeoplePage {
             notice,
             terms: panel.terms().clone(),
             people: people.collect(),
+            alone,
             link,
             agreement: panel.agreement().into(),
             disputes: disputed
@@ -172,16 +181,69 @@ impl Dispute {
     }
 }
 
+/// Somebody who teaches alone.
+struct AloneView {
+    name: String,
+    home: String,
+    answers: u32,
+    state: &'static str,
+    /// Which of the rules that people came to is theirs, from 1.
+    rule: Option<usize>,
+}
+
+/// How far those are who teach alone, and whose rules are the same.
+async fn alone(app: &AppState, id: SessionId) -> Result<Vec<AloneView>, WebError> {
+    let own = |session: &Session| -> Vec<(String, String)> {
+        let people = session.panel().people().values();
+        people
+            .filter_map(|person| Some((person.name.clone(), person.session.clone()?)))
+            .collect()
+    };
+    let mut rules: Vec<Concept> = Vec::new();
+    let mut views = Vec::new();
+    for (name, session) in app.teaching.look(id, own).await? {
+        let theirs: SessionId = session.parse().map_err(WebError::internal)?;
+        let standing = |session: &Session| {
+            let counts = session.counts();
+            let answers = counts.membership + counts.comparison + counts.equivalence;
+            let (state, rule) = match session.position() {
+                Position::Done(rule) => ("done", Some(rule.clone())),
+                Position::Conflict(_) => ("at answers that contradict each other", None),
+                Position::Asking(_) | Position::Thinking => ("answering", None),
+            };
+            (answers, state, rule)
+        };
+        let (answers, state, rule) = app.teaching.look(theirs, standing).await?;
+        let rule = rule.map(|rule| match rules.iter().position(|known| *known == rule) {
+            Some(place) => place + 1,
+            None => {
+                rules.push(rule);
+                rules.len()
+            }
+        });
+        views.push(AloneView {
+            name,
+            home: format!("/sessions/{theirs}"),
+            answers,
+            state,
+            rule,
+        });
+    }
+    Ok(views)
+}
+
 /// The page as the session stands.
 async fn page(
     app: &AppState,
     id: SessionId,
     notice: Option<String>,
-    link: Option<(u32, InviteKey)>,
+    link: Option<Link>,
 ) -> Result<Response, WebError> {
     let at_work = app.teaching.leases().at_work(id);
-    let view =
-        move |session: &Session| render(&PeoplePage::of(id, session, &at_work, notice, link));
+    let alone = alone(app, id).await?;
+    let view = move |session: &Session| {
+        render(&PeoplePage::of(id, session, &at_work, alone, notice, link))
+    };
     app.teaching.look(id, view).await
 }
 
@@ -189,17 +251,34 @@ async fn show(State(app): State<AppState>, Path(id): Path<String>) -> Result<Res
     Ok(page(&app, session_id(&id)?, None, None).await?)
 }
 
-/// Invites somebody: their number, and their key.
+/// Somebody's number, and the path at which they answer.
+pub(crate) type Link = (u32, String);
+
+fn path(key: &InviteKey) -> String {
+    format!("/answer/{key}")
+}
+
+/// Invites somebody. Where everybody teaches alone, with a session of the same task
+/// for them.
 ///
 /// # Errors
 ///
 /// If the session refuses.
-pub(crate) async fn invited(
-    app: &AppState,
-    id: SessionId,
-    name: String,
-) -> Result<(u32, InviteKey), WebError> {
-    let decide = move |session: &Session| Ok(session.invite(&name)?);
+pub(crate) async fn invited(app: &AppState, id: SessionId, name: String) -> Result<Link, WebError> {
+    let asked = name.clone();
+    let alone = move |session: &Session| -> Result<_, WebError> {
+        session.invite(&asked, None)?;
+        let alone = session.panel().terms().pooling == Pooling::Alone;
+        Ok(alone.then(|| (session.task().clone(), session.setup().clone())))
+    };
+    let own = match app.teaching.look(id, alone).await?? {
+        Some((task, setup)) => Some(app.teaching.create(task, setup).await?),
+        None => None,
+    };
+    let decide = move |session: &Session| {
+        let own = own.map(|own| own.to_string());
+        Ok(session.invite(&name, own)?)
+    };
     let view = |session: &Session, _: &_| {
         session
             .panel()
@@ -209,7 +288,10 @@ pub(crate) async fn invited(
     };
     let person = app.teaching.act(id, decide, view).await?;
     let person = person.ok_or_else(|| WebError::internal("nobody was invited"))?;
-    Ok((person, app.teaching.new_key(id, person).await?))
+    Ok(match own {
+        Some(own) => (person, format!("/sessions/{own}")),
+        None => (person, path(&app.teaching.new_key(id, person).await?)),
+    })
 }
 
 async fn invite(
@@ -243,12 +325,15 @@ async fn new_link(
     Path((id, number)): Path<(String, String)>,
 ) -> Result<Response, PageError> {
     let (id, person) = (session_id(&id)?, person(&number)?);
-    let view = move |session: &Session| session.panel().people().contains_key(&person);
+    let view = move |session: &Session| {
+        let known = session.panel().people().get(&person);
+        known.is_some_and(|person| person.session.is_none())
+    };
     if !app.teaching.look(id, view).await? {
         return Err(WebError::NoPage.into());
     }
     let key = app.teaching.new_key(id, person).await?;
-    Ok(page(&app, id, None, Some((person, key))).await?)
+    Ok(page(&app, id, None, Some((person, path(&key)))).await?)
 }
 
 async fn dismiss(
@@ -267,6 +352,7 @@ fn read_terms(form: &Form) -> Result<Terms, Malformed> {
         pooling: match form.text("pooling") {
             "majority" => Pooling::Majority,
             "reliability" => Pooling::Reliability,
+            "alone" => Pooling::Alone,
             _ => return Err(Malformed::new("pooling", "choose how answers become one")),
         },
         shows_rule: form.has("shows_rule"),

@@ -36,6 +36,9 @@ fn described(session: &Session) -> Value {
             value["person"] = (*number).into();
             value["name"] = person.name.as_str().into();
             value["left"] = person.left.into();
+            if let Some(own) = &person.session {
+                value["session"] = own.as_str().into();
+            }
             value
         })
         .collect();
@@ -67,9 +70,8 @@ async fn invite(
     fields.only(&["name"])?;
     let name = fields.get("name").and_then(Value::as_str);
     let name = name.ok_or_else(|| Malformed::new("name", "give the person's name"))?;
-    let (person, key) = invited(&app, id, name.to_owned()).await?;
-    let link = format!("/answer/{key}");
-    let made = json!({"person": person, "key": key.to_string(), "link": link});
+    let (person, link) = invited(&app, id, name.to_owned()).await?;
+    let made = json!({"person": person, "link": link});
     Ok((StatusCode::CREATED, Json(made)).into_response())
 }
 
@@ -85,8 +87,11 @@ async fn set_terms(State(app): State<AppState>, Path(id): Path<String>, body: Bo
             None => now.pooling,
             Some(Some("majority")) => Pooling::Majority,
             Some(Some("reliability")) => Pooling::Reliability,
+            Some(Some("alone")) => Pooling::Alone,
             Some(_) => {
-                return Err(Malformed::new("pooling", "give `majority` or `reliability`").into());
+                return Err(
+                    Malformed::new("pooling", "give `majority`, `reliability` or `alone`").into(),
+                );
             }
         };
         let shows_rule = match fields.get("shows_rule") {

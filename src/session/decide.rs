@@ -250,7 +250,7 @@ impl Session {
         match self.position() {
             Position::Thinking | Position::Done(_) => Vec::new(),
             // Who of several people answers what is not to be foreseen.
-            Position::Asking(_) if !self.panel().people().is_empty() => Vec::new(),
+            Position::Asking(_) if self.panel().is_shared() => Vec::new(),
             Position::Asking(number) => {
                 let Some(asked) = self.asked(*number) else {
                     return Vec::new();
