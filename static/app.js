@@ -6,6 +6,7 @@ import * as fold from "./fold.js";
 import * as keys from "./keys.js";
 import * as live from "./live.js";
 import * as paint from "./paint.js";
+import * as people from "./people.js";
 import * as player from "./player.js";
 import * as studio from "./studio.js";
 import * as swap from "./swap.js";
@@ -16,6 +17,7 @@ import * as walk from "./walk.js";
 
 const MODULES = [
   keys, swap, live, fold, times, player, trace, builder, walk, upload, paint, studio,
+  people,
 ];
 
 swap.begin((main, signal) => {

@@ -25,8 +25,10 @@ use crate::session::{
 use crate::store::SessionId;
 use crate::world::Shown;
 
-type Answer = Result<Json<Value>, ApiError>;
-type Body = Result<Bytes, BytesRejection>;
+/// What a handler answers.
+pub(crate) type Answer = Result<Json<Value>, ApiError>;
+/// What a request brings.
+pub(crate) type Body = Result<Bytes, BytesRejection>;
 
 /// All routes but that of uploads, relative to `/api/v1`.
 pub(crate) fn routes() -> Router<AppState> {
@@ -46,7 +48,8 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/live", get(super::live::live))
 }
 
-fn read_body(body: Body) -> Result<Value, WebError> {
+/// The JSON of a request.
+pub(crate) fn read_body(body: Body) -> Result<Value, WebError> {
     let bytes = body.map_err(|rejection| {
         if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
             WebError::TooLarge
@@ -129,38 +132,7 @@ async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
 fn describe(session: &Session, position: &Position) -> Value {
     match position {
         Position::Thinking => json!({"kind": "thinking"}),
-        Position::Asking(number) => {
-            let Some(asked) = session.asked(*number) else {
-                return json!({"kind": "thinking"});
-            };
-            let question = QuestionText::of(&asked.question, session.universe());
-            let mut value = serde_json::to_value(question).unwrap_or_default();
-            value["number"] = (*number).into();
-            let atoms: &[&Atom] = match &asked.question {
-                Question::Membership { atom } => &[atom],
-                Question::Comparison { first, second } => &[first, second],
-                Question::Equivalence { hypothesis } => {
-                    show_rule(&mut value, session, hypothesis);
-                    &[]
-                }
-            };
-            let shown = atoms.iter().filter_map(|atom| match atom {
-                Atom::Word(word) => session.world()?.shown(word),
-                Atom::Point(_) | Atom::Item(_) => None,
-            });
-            let shown: Vec<Shown<'_>> = shown.collect();
-            if !shown.is_empty() {
-                value["shown"] = json!(shown);
-            }
-            if asked.hurried {
-                value["hurried"] = true.into();
-            }
-            if let Some(left) = &asked.left {
-                value["left"] = json!(left);
-                value["removed"] = json!(asked.removed);
-            }
-            value
-        }
+        Position::Asking(number) => describe_question(session, *number),
         Position::Conflict(conflict) => {
             let mut value = serde_json::to_value(conflict).unwrap_or_default();
             value["kind"] = "conflict".into();
@@ -176,6 +148,40 @@ fn describe(session: &Session, position: &Position) -> Value {
             value
         }
     }
+}
+
+/// A question that was put, as `interfaces` fixes it.
+pub(crate) fn describe_question(session: &Session, number: u32) -> Value {
+    let Some(asked) = session.asked(number) else {
+        return json!({"kind": "thinking"});
+    };
+    let question = QuestionText::of(&asked.question, session.universe());
+    let mut value = serde_json::to_value(question).unwrap_or_default();
+    value["number"] = (number).into();
+    let atoms: &[&Atom] = match &asked.question {
+        Question::Membership { atom } => &[atom],
+        Question::Comparison { first, second } => &[first, second],
+        Question::Equivalence { hypothesis } => {
+            show_rule(&mut value, session, hypothesis);
+            &[]
+        }
+    };
+    let shown = atoms.iter().filter_map(|atom| match atom {
+        Atom::Word(word) => session.world()?.shown(word),
+        Atom::Point(_) | Atom::Item(_) => None,
+    });
+    let shown: Vec<Shown<'_>> = shown.collect();
+    if !shown.is_empty() {
+        value["shown"] = json!(shown);
+    }
+    if asked.hurried {
+        value["hurried"] = true.into();
+    }
+    if let Some(left) = &asked.left {
+        value["left"] = json!(left);
+        value["removed"] = json!(asked.removed);
+    }
+    value
 }
 
 /// The whole rule; and the learned part, where that is not all of it.

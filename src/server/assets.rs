@@ -30,6 +30,7 @@ const ASSETS: &[Asset] = &[
     asset!("app.css", CSS),
     asset!("app.js", SCRIPT),
     asset!("builder.js", SCRIPT),
+    asset!("people.js", SCRIPT),
     asset!("player.js", SCRIPT),
     asset!("fold.js", SCRIPT),
     asset!("keys.js", SCRIPT),
@@ -83,4 +84,23 @@ pub(crate) async fn get(
         asset.bytes,
     )
         .into_response())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ASSETS;
+
+    /// A block that is left open hides all that follows it from the browser.
+    #[test]
+    fn every_block_of_the_style_sheet_is_closed() {
+        let sheet = ASSETS.iter().find(|asset| asset.name == "app.css").unwrap();
+        let mut depth = 0;
+        for (number, line) in sheet.bytes.split(|byte| *byte == b'\n').enumerate() {
+            for byte in line {
+                depth += i32::from(*byte == b'{') - i32::from(*byte == b'}');
+            }
+            assert!((0..=2).contains(&depth), "line {}", number + 1);
+        }
+        assert_eq!(depth, 0);
+    }
 }

@@ -20,6 +20,8 @@ pub(crate) enum WebError {
     NoMethod,
     /// No session of this name.
     NoSession,
+    /// Nobody answers with this key.
+    NotInvited,
     /// The session does not grant it now.
     Refused(Refusal),
     /// The request's content is wrong.
@@ -58,9 +60,10 @@ impl WebError {
 
     pub(crate) fn status(&self) -> StatusCode {
         match self {
-            Self::NoPage | Self::NoSession | Self::Refused(Refusal::Unknown { .. }) => {
-                StatusCode::NOT_FOUND
-            }
+            Self::NoPage
+            | Self::NoSession
+            | Self::NotInvited
+            | Self::Refused(Refusal::Unknown { .. }) => StatusCode::NOT_FOUND,
             Self::NoMethod => StatusCode::METHOD_NOT_ALLOWED,
             Self::Refused(
                 Refusal::Unfit { .. }
@@ -90,6 +93,7 @@ impl WebError {
             Self::NoPage => "not_found",
             Self::NoMethod => "method_not_allowed",
             Self::NoSession => "no_such_session",
+            Self::NotInvited => "not_invited",
             Self::Refused(refusal) => match refusal {
                 Refusal::Closed { .. } => "question_closed",
                 Refusal::Unknown { .. } => "no_such_question",
@@ -154,6 +158,10 @@ impl WebError {
             Self::NoMethod => "This address does not take such a request.".to_owned(),
             Self::NoSession => {
                 "There is no such session here: check the address, or begin a new one.".to_owned()
+            }
+            Self::NotInvited => {
+                "This link does not answer here, or not any more: ask whoever sent it for a new one."
+                    .to_owned()
             }
             Self::Refused(refusal) => sentence(&refusal.to_string()),
             Self::Malformed(malformed) => sentence(&malformed.message),

@@ -6,6 +6,7 @@ use std::convert::Infallible;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::extract::{Path, State};
+use axum::response::IntoResponse;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use tokio::sync::watch;
 use tokio_stream::wrappers::WatchStream;
@@ -13,7 +14,7 @@ use tokio_stream::{Stream, StreamExt};
 
 use super::AppState;
 use super::api::session_id;
-use super::error::ApiError;
+use super::error::{ApiError, WebError};
 use crate::session::Session;
 use crate::store::SessionId;
 
@@ -68,8 +69,15 @@ fn set(known: &mut u64, entries: u64) -> bool {
 pub(crate) async fn live(
     State(app): State<AppState>,
     Path(id): Path<String>,
-) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, ApiError> {
-    let id = session_id(&id)?;
+) -> Result<impl IntoResponse, ApiError> {
+    Ok(news(&app, session_id(&id)?).await?)
+}
+
+/// News of this session for whoever may have them.
+pub(crate) async fn news(
+    app: &AppState,
+    id: SessionId,
+) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>> + use<>>, WebError> {
     let entries = app.teaching.look(id, Session::entries).await?;
     let news = WatchStream::new(app.teaching.live().follow(id, entries));
     let events = news.map(|entries| {

@@ -19,7 +19,7 @@ use super::AppState;
 use super::api::session_id;
 use super::error::{PageError, WebError};
 use super::upload::RECORDINGS;
-use crate::store::{CHUNK, Store, StoreError, StoredFile};
+use crate::store::{CHUNK, SessionId, Store, StoreError, StoredFile};
 
 /// What was uploaded never changes.
 const KEEP: &str = "private, max-age=31536000, immutable";
@@ -33,7 +33,20 @@ pub(crate) async fn show(
     Path((id, path)): Path<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
-    let id = session_id(&id)?;
+    Ok(serve(&app, session_id(&id)?, path, &headers).await?)
+}
+
+/// A file of this session's upload, or the range of it that the headers ask for.
+///
+/// # Errors
+///
+/// If there is no such file.
+pub(crate) async fn serve(
+    app: &AppState,
+    id: SessionId,
+    path: String,
+    headers: &HeaderMap,
+) -> Result<Response, WebError> {
     let file = match path.as_str() {
         RECORDINGS => None,
         _ => app.teaching.file(id, path).await?,

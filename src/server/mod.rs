@@ -18,11 +18,15 @@ mod export;
 mod follow;
 mod forms;
 mod guard;
+mod invited;
+mod leases;
 mod live;
 mod media;
 mod outlook;
 mod pages;
 mod past;
+mod people;
+mod people_api;
 mod practice;
 mod recording;
 mod rule;
@@ -79,9 +83,15 @@ impl AppState {
     /// A site over this store, in which as many sessions think at the same
     /// time as the machine has cores.
     pub fn new(store: Arc<dyn Store>) -> Self {
+        Self::with_lease(store, leases::LENGTH)
+    }
+
+    /// The same, where each of several people has a question for so long before it
+    /// is offered to another.
+    pub fn with_lease(store: Arc<dyn Store>, lease: Duration) -> Self {
         let width = std::thread::available_parallelism().map_or(2, usize::from);
         Self {
-            teaching: Arc::new(Teaching::new(store, width)),
+            teaching: Arc::new(Teaching::new(store, width, lease)),
         }
     }
 }
@@ -92,6 +102,7 @@ pub fn app(state: AppState) -> Router {
     let uploads_in_time = RequestBodyDeadlineLayer::new(UPLOAD_DEADLINE);
     let new_session = Router::new().route("/sessions", post(upload::create));
     let api = api::routes()
+        .merge(people_api::routes())
         .layer(in_time.clone())
         .merge(new_session.layer(uploads_in_time.clone()))
         .fallback(async || ApiError(WebError::NoPage))
@@ -105,6 +116,8 @@ pub fn app(state: AppState) -> Router {
         .route("/studio/recordings", post(studio::record));
     let pages = pages::routes()
         .merge(studio::routes())
+        .merge(people::routes())
+        .merge(invited::routes())
         .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))

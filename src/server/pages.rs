@@ -190,19 +190,20 @@ async fn enlarge(
     act(&app, id, Typed::default(), decide).await
 }
 
-struct ExampleView {
-    behaviour: BehaviourView,
-    label: bool,
+/// What is known from the start.
+pub(crate) struct ExampleView {
+    pub(crate) behaviour: BehaviourView,
+    pub(crate) label: bool,
 }
 
 #[derive(Template)]
 #[template(path = "history.html")]
-struct HistoryPage {
-    shell: Shell,
-    bar: Bar,
-    notice: Option<String>,
-    items: Vec<PastView>,
-    examples: Vec<ExampleView>,
+pub(crate) struct HistoryPage {
+    pub(crate) shell: Shell,
+    pub(crate) bar: Bar,
+    pub(crate) notice: Option<String>,
+    pub(crate) items: Vec<PastView>,
+    pub(crate) examples: Vec<ExampleView>,
 }
 
 async fn history(

@@ -31,8 +31,28 @@ pub(crate) struct RecentView {
 impl RecentView {
     /// The last ones, the latest first.
     pub(crate) fn last(session: &Session) -> Vec<Self> {
-        let standing = session.standing();
-        let latest = standing.iter().rev().take(RECENT);
+        let standing = session.standing().iter().rev();
+        Self::of(standing.map(|s| (s.number, &s.reply)), session)
+    }
+
+    /// The last ones of this person, the latest first.
+    pub(crate) fn said_by(person: u32, session: &Session) -> Vec<Self> {
+        let panel = session.panel();
+        let said = panel
+            .answered_by(person)
+            .iter()
+            .rev()
+            .filter_map(|&number| {
+                let opinion = panel.said(person, number)?;
+                Some((number, &opinion.reply))
+            });
+        Self::of(said, session)
+    }
+
+    fn of<'a>(
+        latest: impl Iterator<Item = (u32, &'a Reply<Atom>)>,
+        session: &Session,
+    ) -> Vec<Self> {
         let brief = |atom: &Atom| Some(Brief::of(atom, session));
         let view = |number: u32, reply: &Reply<Atom>| {
             let (first, second) = match (&session.asked(number)?.question, reply) {
@@ -50,7 +70,10 @@ impl RecentView {
                 said: said(reply),
             })
         };
-        latest.filter_map(|s| view(s.number, &s.reply)).collect()
+        latest
+            .take(RECENT)
+            .filter_map(|(number, reply)| view(number, reply))
+            .collect()
     }
 }
 
@@ -84,8 +107,11 @@ const COMPARISONS: [(&str, &str, Reply<Atom>); 4] = [
 impl PastView {
     /// The standing answer of this number.
     pub(crate) fn of(number: u32, session: &Session) -> Option<Self> {
-        let standing = session.answer_to(number)?;
-        let reply = &standing.reply;
+        Self::said(number, &session.answer_to(number)?.reply, session)
+    }
+
+    /// What somebody said to the question of this number.
+    pub(crate) fn said(number: u32, reply: &Reply<Atom>, session: &Session) -> Option<Self> {
         let (asked, first, second, choices): (_, _, _, &[_]) = match &session
             .asked(number)?
             .question

@@ -13,7 +13,6 @@ use super::pages::{Fields, read_form};
 use super::past::said;
 use super::views::{Bar, Shell, render};
 use crate::session::Session;
-use crate::store::SessionId;
 use crate::task::{Practice, Practised};
 
 #[derive(Template)]
@@ -37,7 +36,11 @@ struct Verdict {
 }
 
 /// The page, with the answer that was given.
-fn page(id: SessionId, session: &Session, answer: Option<&str>) -> Result<Response, WebError> {
+pub(crate) fn page(
+    bar: Bar,
+    session: &Session,
+    answer: Option<&str>,
+) -> Result<Response, WebError> {
     let practice = session.task().practice.as_ref();
     let Practice {
         asks,
@@ -64,7 +67,6 @@ fn page(id: SessionId, session: &Session, answer: Option<&str>) -> Result<Respon
             })
         }
     };
-    let bar = Bar::of(id, session);
     Ok(render(&PracticePage {
         shell: Shell::of(bar.clone()),
         bar,
@@ -81,7 +83,7 @@ pub(crate) async fn show(
     Path(id): Path<String>,
 ) -> Result<Response, PageError> {
     let id = session_id(&id)?;
-    let view = move |session: &Session| page(id, session, None);
+    let view = move |session: &Session| page(Bar::of(id, session), session, None);
     Ok(app.teaching.look(id, view).await??)
 }
 
@@ -93,6 +95,7 @@ pub(crate) async fn answer(
 ) -> Result<Response, PageError> {
     let id = session_id(&id)?;
     let form = read_form(fields)?;
-    let view = move |session: &Session| page(id, session, Some(form.text("answer")));
+    let view =
+        move |session: &Session| page(Bar::of(id, session), session, Some(form.text("answer")));
     Ok(app.teaching.look(id, view).await??)
 }

@@ -9,6 +9,7 @@ use super::error::{PageError, WebError};
 use super::follow::Follow;
 use super::forms::Faults;
 use super::past::{PastView, RecentView};
+use super::rule::RuleView;
 use super::spent::Spent;
 use super::views::{Bar, Shell, render};
 use super::{check, done};
@@ -18,7 +19,7 @@ use crate::store::SessionId;
 
 #[derive(Template)]
 #[template(path = "question.html")]
-struct QuestionPage {
+pub(crate) struct QuestionPage {
     shell: Shell,
     bar: Bar,
     notice: Option<String>,
@@ -26,10 +27,49 @@ struct QuestionPage {
     first: BehaviourView,
     second: Option<BehaviourView>,
     hurried: bool,
+    /// Whether the sides are not those of the log.
+    mirrored: bool,
     /// What the colours of the world mean.
     legend: Vec<Chip>,
     /// The last answers.
     recent: Vec<RecentView>,
+    /// The rule that was shown last, where people may see it.
+    rule: Option<RuleView>,
+}
+
+/// A question as it is put to somebody.
+pub(crate) struct Put {
+    pub(crate) number: u32,
+    pub(crate) first: BehaviourView,
+    pub(crate) second: Option<BehaviourView>,
+    pub(crate) mirrored: bool,
+    pub(crate) hurried: bool,
+    pub(crate) rule: Option<RuleView>,
+    pub(crate) recent: Vec<RecentView>,
+}
+
+impl QuestionPage {
+    pub(crate) fn of(
+        shell: Shell,
+        bar: Bar,
+        notice: Option<String>,
+        put: Put,
+        session: &Session,
+    ) -> Self {
+        Self {
+            shell,
+            bar,
+            notice,
+            number: put.number,
+            first: put.first,
+            second: put.second,
+            hurried: put.hurried,
+            mirrored: put.mirrored,
+            legend: legend(session),
+            recent: put.recent,
+            rule: put.rule,
+        }
+    }
 }
 
 #[derive(Template)]
@@ -106,17 +146,16 @@ pub(crate) fn page(id: SessionId, session: &Session, view: View) -> Response {
                     return check::page(frame, (*number, hypothesis), session, view);
                 }
             };
-            render(&QuestionPage {
-                shell,
-                bar,
-                notice,
+            let put = Put {
                 number: *number,
                 first,
                 second,
+                mirrored: false,
                 hurried: asked.hurried,
-                legend: legend(session),
+                rule: None,
                 recent: RecentView::last(session),
-            })
+            };
+            render(&QuestionPage::of(shell, bar, notice, put, session))
         }
         Position::Conflict(conflict) => render(&ConflictPage {
             shell,

@@ -9,10 +9,11 @@ use tokio::sync::{Mutex as AsyncMutex, Semaphore};
 
 use super::ahead::{Foresight, Trial};
 use super::error::WebError;
+use super::leases::Leases;
 use super::live::Live;
 use super::upload::{Pools, Upload};
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
-use crate::store::{Entry, Listed, SessionId, Store, StoreError, StoredFile};
+use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, StoredFile};
 
 /// How many folded sessions are kept in memory; the others wait in the store.
 const KEPT: usize = 200;
@@ -38,6 +39,7 @@ pub(crate) struct Teaching {
     permits: Arc<Semaphore>,
     foresight: Arc<Foresight>,
     live: Arc<Live>,
+    leases: Arc<Leases>,
 }
 
 #[derive(Default)]
@@ -47,8 +49,9 @@ struct Loaded {
 }
 
 impl Teaching {
-    /// Sessions of `store`, of which at most `width` think at the same time.
-    pub(crate) fn new(store: Arc<dyn Store>, width: usize) -> Self {
+    /// Sessions of `store`, of which at most `width` think at the same time; each of
+    /// several people has a question for as long as `lease`.
+    pub(crate) fn new(store: Arc<dyn Store>, width: usize, lease: Duration) -> Self {
         let pools = Pools::default();
         Self {
             archive: Arc::new(Archive { store, pools }),
@@ -56,6 +59,7 @@ impl Teaching {
             permits: Arc::new(Semaphore::new(width.max(1))),
             foresight: Arc::new(Foresight::new(width)),
             live: Arc::default(),
+            leases: Arc::new(Leases::new(lease)),
         }
     }
 
@@ -139,6 +143,30 @@ impl Teaching {
     /// Who waits for news.
     pub(crate) fn live(&self) -> &Live {
         &self.live
+    }
+
+    /// Who is at which question.
+    pub(crate) fn leases(&self) -> &Arc<Leases> {
+        &self.leases
+    }
+
+    /// Who answers with this key.
+    pub(crate) async fn invited(&self, key: InviteKey) -> Result<(SessionId, u32), WebError> {
+        let store = self.store();
+        let found = self.on_pool(move || store.invited(&key).map_err(WebError::internal));
+        found.await?.ok_or(WebError::NotInvited)
+    }
+
+    /// A new key for this person of the session, in the place of the one before.
+    pub(crate) async fn new_key(&self, id: SessionId, person: u32) -> Result<InviteKey, WebError> {
+        let store = self.store();
+        self.on_pool(move || {
+            let key = InviteKey::random().map_err(WebError::internal)?;
+            let kept = store.invite(&key, &id, person);
+            kept.map_err(WebError::internal)?;
+            Ok(key)
+        })
+        .await
     }
 
     /// The store, for what is read piece by piece.

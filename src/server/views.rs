@@ -28,6 +28,11 @@ impl Shell {
         }
     }
 
+    /// Whether who looks has no business anywhere else.
+    pub(crate) fn is_invited(&self) -> bool {
+        self.session.as_ref().is_some_and(|bar| bar.invited)
+    }
+
     /// A page of a session.
     pub(crate) fn of(bar: Bar) -> Self {
         Self {

@@ -249,6 +249,8 @@ impl Session {
     pub fn foreseen(&self) -> Vec<Event> {
         match self.position() {
             Position::Thinking | Position::Done(_) => Vec::new(),
+            // Who of several people answers what is not to be foreseen.
+            Position::Asking(_) if self.panel().is_shared() => Vec::new(),
             Position::Asking(number) => {
                 let Some(asked) = self.asked(*number) else {
                     return Vec::new();

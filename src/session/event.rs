@@ -86,6 +86,9 @@ pub enum Event {
         person: u32,
         /// As the owner calls them.
         name: String,
+        /// The name of the session that is theirs alone, where they have one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        session: Option<String>,
     },
     /// Somebody is not to answer any more; what they said stays.
     Dismissed {

@@ -56,7 +56,7 @@ impl Session {
                 Ok(())
             }
             Event::Conflict { conflict } => {
-                if self.panel.people().is_empty() {
+                if !self.panel.is_shared() {
                     self.expect_thinking()?;
                 }
                 self.arrive(Position::Conflict(conflict.clone()));
@@ -76,7 +76,11 @@ impl Session {
                 let open: Vec<u32> = self.open.iter().copied().collect();
                 open.into_iter().try_for_each(|number| self.pool(number))
             }
-            Event::Invited { person, name } => self.panel.invite(*person, name),
+            Event::Invited {
+                person,
+                name,
+                session,
+            } => self.panel.invite(*person, name, session.as_ref()),
             Event::Dismissed { person } => self.panel.dismiss(*person),
             Event::Said {
                 number,
@@ -116,7 +120,7 @@ impl Session {
 
     /// A question to one person, or to one of several, who may have one each.
     fn put(&mut self, number: u32, asked: Asked) -> Result<(), String> {
-        if self.panel.people().is_empty() || !matches!(self.position, Position::Asking(_)) {
+        if !self.panel.is_shared() || !matches!(self.position, Position::Asking(_)) {
             self.expect_thinking()?;
         }
         if number != self.next_number() {

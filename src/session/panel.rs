@@ -31,6 +31,9 @@ pub enum Pooling {
     Majority,
     /// What most of them say, each as heavy as that person was reliable so far.
     Reliability,
+    /// They do not: everybody who is invited teaches a rule of their own, in a
+    /// session of their own.
+    Alone,
 }
 
 /// What the owner of a session chooses for its people.
@@ -82,6 +85,8 @@ pub struct Person {
     pub name: String,
     /// Whether they were asked to leave.
     pub left: bool,
+    /// The name of the session that is theirs alone, where they have one.
+    pub session: Option<String>,
 }
 
 /// The people of a session, and what they said.
@@ -123,6 +128,11 @@ impl Panel {
     /// The people, by number.
     pub fn people(&self) -> &BTreeMap<u32, Person> {
         &self.people
+    }
+
+    /// Whether anybody answers for the session itself.
+    pub fn is_shared(&self) -> bool {
+        self.people.values().any(|person| person.session.is_none())
     }
 
     /// What was said to a question, in the order in which it was.
@@ -175,7 +185,8 @@ impl Panel {
         let mut votes: Vec<(&Reply<Atom>, f64)> = Vec::new();
         for opinion in told {
             let weight = match self.terms.pooling {
-                Pooling::Majority => 1.0,
+                // Who teaches alone has no voice here.
+                Pooling::Majority | Pooling::Alone => 1.0,
                 Pooling::Reliability => weight(self.reliability(opinion.person, Some(number))),
             };
             match votes.iter_mut().find(|(reply, _)| **reply == opinion.reply) {
@@ -272,13 +283,19 @@ impl Panel {
     }
 
     /// Adds a person of the next number.
-    pub(super) fn invite(&mut self, person: u32, name: &str) -> Result<(), String> {
+    pub(super) fn invite(
+        &mut self,
+        person: u32,
+        name: &str,
+        session: Option<&String>,
+    ) -> Result<(), String> {
         if person != self.next_person() {
             return Err(format!("person {person} comes out of turn"));
         }
         let person_of = Person {
             name: name.to_owned(),
             left: false,
+            session: session.cloned(),
         };
         self.people.insert(person, person_of);
         Ok(())

@@ -52,7 +52,7 @@ impl Session {
     /// while several answered: the entry to append. None where what comes next
     /// depends on the open questions. Takes as long as [`Self::think`].
     pub fn further(&self) -> Option<Event> {
-        if self.panel.people().is_empty() || !matches!(self.position(), Position::Asking(_)) {
+        if !self.panel.is_shared() || !matches!(self.position(), Position::Asking(_)) {
             return None;
         }
         let mut beside = self.fork();
@@ -93,12 +93,12 @@ impl Session {
         Ok(Decision::Append(Event::Terms { terms }))
     }
 
-    /// The owner invites somebody.
+    /// The owner invites somebody; with a session's name to teach alone there.
     ///
     /// # Errors
     ///
     /// If there are too many, or the name is no name.
-    pub fn invite(&self, name: &str) -> Result<Decision, Refusal> {
+    pub fn invite(&self, name: &str, session: Option<String>) -> Result<Decision, Refusal> {
         let name = name.trim();
         if name.is_empty() || name.chars().count() > MAX_NAME || name.chars().any(char::is_control)
         {
@@ -110,6 +110,7 @@ impl Session {
         Ok(Decision::Append(Event::Invited {
             person: self.panel.next_person(),
             name: name.to_owned(),
+            session,
         }))
     }
 

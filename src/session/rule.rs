@@ -42,6 +42,15 @@ impl Session {
         self.learned().map(|learned| self.whole(learned))
     }
 
+    /// The [whole](Self::whole) rule that was asked about last, whatever became of it.
+    pub fn last_shown(&self) -> Option<Concept> {
+        let mut asked = self.asked.values().rev();
+        asked.find_map(|asked| match &asked.question {
+            Question::Equivalence { hypothesis } => Some(self.whole(hypothesis)),
+            _ => None,
+        })
+    }
+
     /// A behaviour that would decide what nothing in the world of the task does about
     /// the learned part, once the teacher has agreed with it; none where all is
     /// decided.

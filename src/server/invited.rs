@@ -1,0 +1,318 @@
+//! The pages of an invited person: a question at a time, what they said, and nothing
+//! of what others say.
+
+use std::sync::Arc;
+
+use askama::Template;
+use axum::Router;
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::response::{IntoResponse, Redirect, Response};
+use axum::routing::{get, post};
+
+use super::AppState;
+use super::behaviour::{BehaviourView, Brief};
+use super::error::{PageError, WebError};
+use super::leases::{Leases, Turn};
+use super::pages::{Fields, HistoryPage, read_form};
+use super::past::{PastView, RecentView};
+use super::rule::RuleView;
+use super::standing::{Put, QuestionPage};
+use super::views::{Bar, Shell, render};
+use super::{live, media, practice};
+use crate::draw::Marks;
+use crate::learner::{Question, Reply};
+use crate::session::{Atom, Decision, Position, Session};
+use crate::store::{InviteKey, SessionId};
+
+/// All routes of invited people.
+pub(crate) fn routes() -> Router<AppState> {
+    Router::new()
+        .route("/answer/{key}", get(show))
+        .route("/answer/{key}/answers", post(answer))
+        .route("/answer/{key}/retractions", post(retract))
+        .route("/answer/{key}/history", get(history))
+        .route("/answer/{key}/practice", get(practise).post(practised))
+        .route("/answer/{key}/live", get(follow))
+        .route("/answer/{key}/media/{*path}", get(file))
+}
+
+/// Who answers with a key.
+#[derive(Clone, Copy)]
+pub(crate) struct Guest {
+    pub(crate) key: InviteKey,
+    pub(crate) session: SessionId,
+    pub(crate) person: u32,
+}
+
+impl Guest {
+    /// Finds out.
+    ///
+    /// # Errors
+    ///
+    /// If nobody answers with this key any more.
+    pub(crate) async fn of(app: &AppState, key: &str) -> Result<Self, WebError> {
+        let key: InviteKey = key.parse().map_err(|_| WebError::NotInvited)?;
+        let (session, person) = app.teaching.invited(key).await?;
+        let guest = Self {
+            key,
+            session,
+            person,
+        };
+        let view = move |session: &Session| {
+            let known = session.panel().people().get(&person);
+            known.is_some_and(|person| !person.left)
+        };
+        match app.teaching.look(session, view).await? {
+            true => Ok(guest),
+            false => Err(WebError::NotInvited),
+        }
+    }
+
+    fn home(&self) -> String {
+        format!("/answer/{}", self.key)
+    }
+
+    fn bar(&self, session: &Session) -> Bar {
+        Bar::invited(self.home(), session, self.person)
+    }
+}
+
+/// Sees to it that there is something for this person to do, if there can be: the
+/// entry that puts another question.
+pub(crate) fn another(
+    session: &Session,
+    leases: &Leases,
+    guest: Guest,
+) -> Result<Decision, WebError> {
+    // Each of them may have one at hand, and as many may wait for others.
+    let most = 2 * session.panel().people().len();
+    let further = match leases.turn(guest.session, session, guest.person) {
+        None if session.open().count() < most => session.further(),
+        _ => None,
+    };
+    Ok(match further {
+        Some(event) => Decision::Append(event),
+        None => Decision::Already(Position::Thinking),
+    })
+}
+
+#[derive(Template)]
+#[template(path = "waiting.html")]
+struct WaitingPage {
+    shell: Shell,
+    bar: Bar,
+    notice: Option<String>,
+    done: bool,
+    recent: Vec<RecentView>,
+}
+
+/// The question that is this person's now.
+fn page(guest: Guest, session: &Session, leases: &Leases, notice: Option<String>) -> Response {
+    let bar = guest.bar(session);
+    let shell = Shell::of(bar.clone());
+    let turn = leases.turn(guest.session, session, guest.person);
+    let recent = RecentView::said_by(guest.person, session);
+    let (number, mirrored) = match turn {
+        Some(Turn::Answer(number)) => (number, false),
+        // With the sides changed, so that the place is not what is remembered.
+        Some(Turn::Repeat(number)) => (number, true),
+        None => {
+            return render(&WaitingPage {
+                shell,
+                bar,
+                notice,
+                done: matches!(session.position(), Position::Done(_)),
+                recent,
+            });
+        }
+    };
+    let Some(asked) = session.asked(number) else {
+        return PageError(WebError::Slow).into_response();
+    };
+    let (first, second, mirrored) = match &asked.question {
+        Question::Membership { atom } => (BehaviourView::of(atom, session), None, false),
+        Question::Comparison { first, second } => {
+            let (first, second) = BehaviourView::pair(first, second, session);
+            match mirrored {
+                true => (second, Some(first), true),
+                false => (first, Some(second), false),
+            }
+        }
+        // Never an open question of theirs.
+        Question::Equivalence { .. } => return PageError(WebError::NoPage).into_response(),
+    };
+    let shows_rule = session.panel().terms().shows_rule;
+    let rule = session.last_shown().filter(|_| shows_rule);
+    let put = Put {
+        number,
+        first,
+        second,
+        mirrored,
+        hurried: false,
+        rule: rule.map(|rule| RuleView::of(&rule, session, &Marks::default())),
+        recent,
+    };
+    render(&QuestionPage::of(shell, bar, notice, put, session))
+}
+
+async fn show(State(app): State<AppState>, Path(key): Path<String>) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    Ok(put(&app, guest, None).await?)
+}
+
+/// The page with the question that comes next for this person.
+async fn put(app: &AppState, guest: Guest, notice: Option<String>) -> Result<Response, WebError> {
+    let leases = app.teaching.leases();
+    let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
+    let decide = move |session: &Session| another(session, &deciding, guest);
+    let view = move |session: &Session, _: &Position| page(guest, session, &viewing, notice);
+    app.teaching.act(guest.session, decide, view).await
+}
+
+/// What a person says: the entry to append.
+///
+/// # Errors
+///
+/// If the question is not theirs to answer.
+pub(crate) fn say(
+    session: &Session,
+    person: u32,
+    number: u32,
+    reply: &Reply<Atom>,
+    took: Option<u64>,
+) -> Result<Decision, WebError> {
+    Ok(match session.panel().due(person) {
+        Some(due) if due == number => session.repeat(person, number, reply)?,
+        _ => session.say(person, number, reply, took)?,
+    })
+}
+
+async fn answer(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+    fields: Fields,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    let form = read_form(fields)?;
+    let decide = move |session: &Session| {
+        let reply = form.reply(session.universe())?;
+        let reply = match reply {
+            Reply::Compared(comparison) if form.has("mirrored") => {
+                Reply::Compared(comparison.mirrored())
+            }
+            reply => reply,
+        };
+        // What a browser says of time is believed if it is some.
+        let took = form
+            .text("took")
+            .parse()
+            .ok()
+            .filter(|took| *took < 86_400_000);
+        say(
+            session,
+            guest.person,
+            form.number("question")?,
+            &reply,
+            took,
+        )
+    };
+    done(&app, guest, decide).await
+}
+
+async fn retract(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+    fields: Fields,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    let form = read_form(fields)?;
+    let decide =
+        move |session: &Session| Ok(session.unsay(guest.person, form.number("question")?)?);
+    done(&app, guest, decide).await
+}
+
+/// Does what a form asks, and shows what is next.
+async fn done(
+    app: &AppState,
+    guest: Guest,
+    decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
+) -> Result<Response, PageError> {
+    match app.teaching.act(guest.session, decide, |_, _| ()).await {
+        Ok(()) | Err(WebError::Slow) => {
+            app.teaching.leases().release(guest.session, guest.person);
+            Ok(Redirect::to(&guest.home()).into_response())
+        }
+        Err(error) if error.is_refusal() => {
+            app.teaching.leases().release(guest.session, guest.person);
+            let page = put(app, guest, Some(error.message())).await?;
+            Ok((error.status(), page).into_response())
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+async fn history(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    let view = move |session: &Session| {
+        let bar = guest.bar(session);
+        let answered = session.panel().answered_by(guest.person).iter().rev();
+        let items = answered.filter_map(|&number| {
+            let said = session.panel().said(guest.person, number)?;
+            let mut past = PastView::said(number, &said.reply, session)?;
+            // Once it is withdrawn, the question comes again.
+            past.others.clear();
+            Some(past)
+        });
+        render(&HistoryPage {
+            shell: Shell::of(bar.clone()),
+            bar,
+            notice: None,
+            items: items.collect(),
+            examples: Vec::new(),
+        })
+    };
+    Ok(app.teaching.look(guest.session, view).await?)
+}
+
+async fn practise(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    let view = move |session: &Session| practice::page(guest.bar(session), session, None);
+    Ok(app.teaching.look(guest.session, view).await??)
+}
+
+async fn practised(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+    fields: Fields,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    let form = read_form(fields)?;
+    let view = move |session: &Session| {
+        practice::page(guest.bar(session), session, Some(form.text("answer")))
+    };
+    Ok(app.teaching.look(guest.session, view).await??)
+}
+
+async fn follow(
+    State(app): State<AppState>,
+    Path(key): Path<String>,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    Ok(live::news(&app, guest.session).await?.into_response())
+}
+
+async fn file(
+    State(app): State<AppState>,
+    Path((key, path)): Path<(String, String)>,
+    headers: HeaderMap,
+) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &key).await?;
+    Ok(media::serve(&app, guest.session, path, &headers).await?)
+}
