@@ -1,10 +1,10 @@
 //! How much a person has to press: the robot's task as its guidelines put it, from the
-//! start page to the file with the automaton.
+//! start page to the file with the automaton, by one who looks at the samples of a rule.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use automata::Dfa;
+use automata::{Dfa, Word};
 use memrep::oracle::{SituatedTeacher, Target, Teacher, TeacherSettings};
 use memrep::task::TaskFile;
 use serde_json::{Value, json};
@@ -43,20 +43,30 @@ async fn clicks(site: &Site, teacher: &mut SituatedTeacher, target: &Dfa, seed: 
         let number = &question["number"];
         let said = match question["kind"].as_str().unwrap() {
             "done" => break,
-            "equivalence" => match teacher.counterexample(&dfa(&question["hypothesis"])) {
-                // A box to tick with it, which says that the samples were looked at.
-                None => {
-                    clicks += 1;
-                    json!({"question": number, "answer": "correct"})
+            "equivalence" => {
+                let rule = dfa(&question["hypothesis"]);
+                let differs = |word: &Word| rule.accepts(word) != target.accepts(word);
+                let sheet = site.get(&format!("{session}/samples")).await.json();
+                let samples = sheet["samples"].as_array().unwrap().iter();
+                let mut samples = samples.map(|sample| word(target.alphabet(), sample));
+                let objection = if let Some(wrong) = samples.find(differs) {
+                    // It has a button.
+                    Some((target.accepts(&wrong), wrong))
+                } else {
+                    let missed = teacher.counterexample(&rule);
+                    // A box to tick with the agreement; or else a button for each thing
+                    // that happens, by which the label is chosen too.
+                    clicks += missed.as_ref().map_or(1, |(word, _)| word.len());
+                    missed.map(|(word, label)| (label, word))
+                };
+                match objection {
+                    None => json!({"question": number, "answer": "correct"}),
+                    Some((label, word)) => {
+                        let names: Vec<&str> = target.alphabet().spell(&word).collect();
+                        json!({"question": number, "answer": "counterexample", "word": names, "label": label})
+                    }
                 }
-                // A button for each thing that happens; what the rule should say of it
-                // is chosen by then.
-                Some((word, label)) => {
-                    let names: Vec<&str> = target.alphabet().spell(&word).collect();
-                    clicks += names.len();
-                    json!({"question": number, "answer": "counterexample", "word": names, "label": label})
-                }
-            },
+            }
             _ => json!({"question": number, "answer": opinion(target, &question)}),
         };
         clicks += 1;
