@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use tokio::sync::{Semaphore, watch};
 
-use crate::session::{Event, Session};
+use crate::session::{Event, Position, Session};
 use crate::store::SessionId;
 
 /// For so many sessions answers are worked out at the same time, those that were
@@ -54,6 +54,10 @@ struct Ahead {
     stale: AtomicBool,
 }
 
+/// So long the page that was asked for has the machine for itself. Nobody answers
+/// sooner, and on a small machine trials would delay what they are to hasten.
+const BREATH: Duration = Duration::from_millis(150);
+
 /// The trials of the sessions looked at last.
 pub(crate) struct Foresight {
     sessions: Mutex<VecDeque<(SessionId, Arc<Ahead>)>>,
@@ -77,9 +81,14 @@ impl Foresight {
         let Some(ahead) = self.open(id, session.entries(), foreseen.is_empty()) else {
             return;
         };
+        // What mends a contradiction is told on the page itself, which waits for it.
+        let is_told = matches!(session.position(), Position::Conflict(_));
         let mut session = session.fork();
         let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
         tokio::spawn(async move {
+            if !is_told {
+                tokio::time::sleep(BREATH).await;
+            }
             for event in foreseen {
                 let turn = (
                     spare.acquire().await,

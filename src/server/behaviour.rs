@@ -9,6 +9,7 @@ use super::scene::{Look, Scene};
 use crate::concept::{Behaviour, Point};
 use crate::session::{Atom, Session, Task, Universe};
 use crate::task::{Axes, BehaviourText, Picture};
+use crate::world::grid::Tile;
 use crate::world::{Trajectory, World};
 
 /// A symbol as a chip.
@@ -113,11 +114,23 @@ impl Brief {
     }
 }
 
-/// What the colours of a world mean; nothing where no world is drawn.
-pub(crate) fn legend(session: &Session) -> Vec<Chip> {
-    match session.world() {
-        Some(World::Grid(_)) => chips(session.task()),
-        _ => Vec::new(),
+/// What the tiles of a world mean; nothing where no world is drawn.
+#[derive(Default)]
+pub(crate) struct Legend {
+    pub(crate) chips: Vec<Chip>,
+    /// Whether there is a wall anywhere.
+    pub(crate) walls: bool,
+}
+
+impl Legend {
+    pub(crate) fn of(session: &Session) -> Self {
+        match session.world() {
+            Some(World::Grid(grid)) => Self {
+                chips: chips(session.task()),
+                walls: grid.cells().any(|at| grid.tile(at) == Tile::Wall),
+            },
+            _ => Self::default(),
+        }
     }
 }
 

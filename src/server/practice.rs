@@ -6,7 +6,7 @@ use axum::response::Response;
 
 use super::AppState;
 use super::api::session_id;
-use super::behaviour::{BehaviourView, Chip, Content, legend};
+use super::behaviour::{BehaviourView, Content, Legend};
 use super::error::{PageError, WebError};
 use super::forms::plain_reply;
 use super::pages::{Fields, read_form};
@@ -24,7 +24,7 @@ struct PracticePage {
     second: Option<BehaviourView>,
     verdict: Option<Verdict>,
     /// What the colours of the world mean.
-    legend: Vec<Chip>,
+    legend: Legend,
 }
 
 /// What becomes of an answer.
@@ -73,7 +73,7 @@ pub(crate) fn page(
         first,
         second,
         verdict,
-        legend: legend(session),
+        legend: Legend::of(session),
     }))
 }
 

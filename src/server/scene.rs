@@ -317,8 +317,6 @@ fn lines(rows: usize, columns: usize) -> String {
 }
 
 fn tiles(grid: &Grid, looks: &[Look]) -> Vec<TileView> {
-    let cells = (0..grid.rows())
-        .flat_map(|row| (0..grid.columns()).map(move |column| Cell { row, column }));
     let view = |at: Cell| {
         let look = match grid.tile(at) {
             Tile::Blank => return None,
@@ -331,5 +329,5 @@ fn tiles(grid: &Grid, looks: &[Look]) -> Vec<TileView> {
             look,
         })
     };
-    cells.filter_map(view).collect()
+    grid.cells().filter_map(view).collect()
 }

@@ -4,7 +4,7 @@
 use askama::Template;
 use axum::response::{IntoResponse, Response};
 
-use super::behaviour::{BehaviourView, Brief, Chip, Content, legend};
+use super::behaviour::{BehaviourView, Brief, Content, Legend};
 use super::error::{PageError, WebError};
 use super::follow::Follow;
 use super::forms::Faults;
@@ -30,7 +30,7 @@ pub(crate) struct QuestionPage {
     /// Whether the sides are not those of the log.
     mirrored: bool,
     /// What the colours of the world mean.
-    legend: Vec<Chip>,
+    legend: Legend,
     /// The last answers.
     recent: Vec<RecentView>,
     /// The rule that was shown last, where people may see it.
@@ -65,7 +65,7 @@ impl QuestionPage {
             second: put.second,
             hurried: put.hurried,
             mirrored: put.mirrored,
-            legend: legend(session),
+            legend: Legend::of(session),
             recent: put.recent,
             rule: put.rule,
         }

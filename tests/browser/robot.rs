@@ -74,29 +74,23 @@ impl Reader {
         assert!(learned.is_equivalent(&self.target).unwrap(), "{text}");
     }
 
-    /// Teaches by mouse from this question on, thinking so long about each; how often
+    /// Teaches by mouse from this question on, looking so long at what comes; how often
     /// something was pressed.
     pub(crate) async fn teach(&mut self, client: &Client, page: Page, think: Duration) -> usize {
         let mut page = page;
         let mut clicks = 0;
         for _ in 0..MANY {
-            tokio::time::sleep(think).await;
             let objection = match page.kind.as_str() {
                 "done" => return clicks,
                 "equivalence" => Some(self.objection(&page)),
                 _ => None,
             };
-            clicks += 1;
-            page = match objection {
-                None => {
-                    let said = self.opinion(&page);
-                    let button = format!("button[name=answer][value={said}]");
-                    page.click(client, &button).await
-                }
+            let last = match objection {
+                None => format!("button[name=answer][value={}]", self.opinion(&page)),
                 Some(None) => {
                     press(client, "#looked").await;
                     clicks += 1;
-                    page.click(client, ".agree button[value=correct]").await
+                    ".agree button[value=correct]".to_owned()
                 }
                 Some(Some((names, label))) => {
                     for name in &names {
@@ -108,9 +102,14 @@ impl Reader {
                     let chosen = format!("input[name=label][value=\"{label}\"]:checked");
                     let chosen = client.find(Locator::Css(&chosen)).await;
                     chosen.expect("the other label is chosen");
-                    page.click(client, "#teach").await
+                    "#teach".to_owned()
                 }
             };
+            press(client, &last).await;
+            clicks += 1;
+            // The page is left alone meanwhile: to look at it takes its time.
+            tokio::time::sleep(think).await;
+            page = page.next(client).await;
         }
         panic!("no rule after {MANY} questions: {page:?}");
     }

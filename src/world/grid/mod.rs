@@ -293,6 +293,12 @@ impl Grid {
         self.columns
     }
 
+    /// All cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
+        let columns = self.columns;
+        (0..self.rows).flat_map(move |row| (0..columns).map(move |column| Cell { row, column }))
+    }
+
     /// What a cell is.
     ///
     /// # Panics
