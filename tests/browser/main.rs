@@ -15,7 +15,10 @@ mod house;
 mod page;
 mod pictures;
 mod recordings;
+mod robot;
+mod stopwatch;
 mod studio;
+mod tabs;
 mod teaching;
 mod walks;
 
@@ -79,22 +82,6 @@ fn named(key: Key) -> String {
     char::from(key).to_string()
 }
 
-/// The key that a button shows, and what presses it.
-async fn shown_key(browser: &Browser, answer: &str) -> String {
-    let shown = texts(
-        &browser.client,
-        &format!("button[name=answer][value={answer}] kbd"),
-    )
-    .await;
-    match shown.concat().as_str() {
-        "←" => named(Key::Left),
-        "→" => named(Key::Right),
-        "↑" => named(Key::Up),
-        "↓" => named(Key::Down),
-        letter => letter.to_lowercase(),
-    }
-}
-
 /// Presses a key wherever the focus is.
 async fn strike_key(browser: &Browser, key: &str) {
     let focus = browser.client.active_element().await.unwrap();
@@ -104,57 +91,13 @@ async fn strike_key(browser: &Browser, key: &str) {
 /// Goes on with the tabulator until the focus is on what the selector finds.
 async fn tab_to(browser: &Browser, selector: &str) {
     let reached = format!("return document.activeElement.matches({selector:?})");
-    for _ in 0..60 {
+    for _ in 0..150 {
         if script(&browser.client, &reached).await == Value::Bool(true) {
             return;
         }
         strike_key(browser, &named(Key::Tab)).await;
     }
     panic!("{selector} cannot be reached with the tabulator");
-}
-
-#[tokio::test]
-async fn the_keyboard_alone_is_enough() {
-    with(Wishes::default(), async |browser| {
-        let client = &browser.client;
-        let house = House::build();
-        let mut person = Person::thinking_of("tomita:1");
-        client.goto(&house.at("/")).await.unwrap();
-        let start = Page::now(client).await;
-        let enter = named(Key::Enter);
-        tab_to(browser, "button[data-task=\"tomita:1\"]").await;
-        strike_key(browser, &enter).await;
-        let mut page = start.next(client).await;
-        for _ in 0..MANY {
-            match page.kind.as_str() {
-                "done" => return,
-                "equivalence" => match person.objection(&page) {
-                    None => {
-                        tab_to(browser, "button[value=correct]").await;
-                        strike_key(browser, &enter).await;
-                    }
-                    Some((word, label)) => {
-                        tab_to(browser, "#word").await;
-                        strike_key(browser, &word).await;
-                        if word.is_empty() {
-                            // Nothing was typed, so that nothing was chosen.
-                            tab_to(browser, "#counterexample input[name=label]").await;
-                            let choose = if label { Key::Space } else { Key::Down };
-                            strike_key(browser, &named(choose)).await;
-                        }
-                        strike_key(browser, &enter).await;
-                    }
-                },
-                _ => {
-                    let key = shown_key(browser, person.opinion(&page)).await;
-                    strike_key(browser, &key).await;
-                }
-            }
-            page = page.next(client).await;
-        }
-        panic!("no rule after {MANY} questions");
-    })
-    .await;
 }
 
 #[tokio::test]
@@ -223,25 +166,6 @@ async fn a_lie_is_found_shown_small_and_mended() {
         let mend = format!("#answer-{lie} button[name=answer][value={truth}]");
         let page = page.click(client, &mend).await;
         assert_ne!(page.kind, "conflict");
-        person.answer_until(client, page, "done").await;
-        person.take_home(browser).await;
-    })
-    .await;
-}
-
-#[tokio::test]
-async fn without_script_everything_works() {
-    let wishes = Wishes {
-        without_script: true,
-        ..Wishes::default()
-    };
-    with(wishes, async |browser| {
-        let client = &browser.client;
-        let house = House::build();
-        let mut person = Person::thinking_of("tomita:1");
-        let page = begin(browser, &house.at("/"), "tomita:1").await;
-        let keys = client.find(Locator::Css("#keys-button")).await.unwrap();
-        assert!(!keys.is_displayed().await.unwrap(), "a script has run");
         person.answer_until(client, page, "done").await;
         person.take_home(browser).await;
     })

@@ -4,6 +4,7 @@
 mod api;
 mod check;
 mod classes;
+mod clicks;
 mod conflicts;
 mod desk;
 mod pages;

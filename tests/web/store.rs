@@ -279,7 +279,7 @@ fn other_files_are_refused_and_left_as_they_are() {
             "not an SQLite file; name another file with --database",
         ),
         (&foreign, "a database of another program"),
-        (&newer, "version 99, and this memrep reads version 2"),
+        (&newer, "version 99, and this memrep reads version 3"),
     ] {
         let before = std::fs::read(path).unwrap();
         let message = refusal(path);
