@@ -42,10 +42,8 @@ fn is_accepted(word: &Value) -> bool {
 /// What somebody who knows the rule says.
 fn honest(question: &Value) -> &'static str {
     if question["kind"] == "membership" {
-        return match is_accepted(&question["word"]) {
-            true => "accept",
-            false => "reject",
-        };
+        let accepted = is_accepted(&question["word"]);
+        return if accepted { "accept" } else { "reject" };
     }
     match (
         is_accepted(&question["first"]),
@@ -69,7 +67,8 @@ async fn judge(site: &Site, session: &str, question: &Value) {
         let mut state = rule["start"].as_u64().unwrap();
         for symbol in word {
             let alphabet = rule["alphabet"].as_array().unwrap();
-            let place = alphabet.iter().position(|name| *name == symbol.to_string());
+            let symbol = json!(symbol.to_string());
+            let place = alphabet.iter().position(|name| *name == symbol);
             state = rule["delta"][state as usize][place.unwrap()]
                 .as_u64()
                 .unwrap();
@@ -134,11 +133,8 @@ async fn three_people_teach_one_rule() {
         let done = site.get(&session).await.json();
         assert_eq!(done["hypothesis"]["states"], 4, "{done}");
         let told = site.get(&format!("{session}/people")).await.json();
-        assert_eq!(
-            told["agreement"]["same"].as_f64().unwrap_or(1.0),
-            1.0,
-            "{told}"
-        );
+        let same = &told["agreement"]["same"];
+        assert!(same.is_null() || *same == json!(1.0), "{told}");
         assert!(
             repeated > 0 || said < 24,
             "of {said} answers some are asked for again"
