@@ -116,10 +116,22 @@ const load = async (address) => {
   }
 };
 
+// Somebody is in the middle of a text.
+const typing = () => {
+  const field = document.activeElement;
+  const isText = field?.matches("input:not([type=radio], [type=checkbox]), textarea");
+  return isText && main().contains(field) && field.value !== field.defaultValue;
+};
+
 /** Fetches this page once more, and shows it where it is another than before. */
 export const refresh = async () => {
   // A form that is being filled in is nobody's to replace.
   if (sending || !main() || main().matches("[data-typed]")) return;
+  if (typing()) {
+    clearTimeout(again);
+    again = setTimeout(refresh, 3000);
+    return;
+  }
   const mine = ++turn;
   let page = null;
   try {
@@ -135,8 +147,11 @@ export const refresh = async () => {
   if (!page) { location.reload(); return; }
   const [before, after] = [main(), page.querySelector("main")];
   const asks = ({ dataset: { kind, question } }) => `${kind} ${question}`;
-  if (after.outerHTML !== served && !(told && asks(before) === asks(after))) {
+  const kept = before.querySelector("[data-keep]");
+  if (after.outerHTML !== served && (kept || !(told && asks(before) === asks(after)))) {
     arrive(page);
+    // What is told once stays until somebody goes elsewhere.
+    if (kept) main().querySelector("[data-keep-before]")?.before(kept);
     return;
   }
   const [old, bar] = [document, page].map((place) => place.querySelector("header.bar"));

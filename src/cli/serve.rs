@@ -30,6 +30,11 @@ pub(crate) struct Args {
     /// The database file in which sessions are kept; created if there is none.
     #[arg(long, value_name = "PATH", default_value = "memrep.db")]
     database: PathBuf,
+    /// How long one of several people has a question before it is offered to
+    /// another, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value = "120",
+          value_parser = clap::value_parser!(u32).range(1..=86400))]
+    lease: u32,
 }
 
 /// Runs the command.
@@ -70,6 +75,7 @@ async fn serve(args: Args) -> anyhow::Result<()> {
         }
     };
     let store = Sqlite::open(&args.database)?;
+    let lease = Duration::from_secs(args.lease.into());
     let at = listener.local_addr().context("the address is unknown")?;
     let stop = stop_signal()?;
     println!("memrep is at http://{at}/");
@@ -77,7 +83,7 @@ async fn serve(args: Args) -> anyhow::Result<()> {
         "Sessions are kept in {}. Stop with Ctrl+C.",
         args.database.display()
     );
-    server::run(listener, AppState::new(Arc::new(store)), stop)
+    server::run(listener, AppState::with_lease(Arc::new(store), lease), stop)
         .await
         .context("the server stopped")
 }

@@ -72,6 +72,9 @@ impl WebError {
                 | Refusal::Looked { .. }
                 | Refusal::Settled { .. }
                 | Refusal::NoBound
+                | Refusal::BadAnswers
+                | Refusal::BadName
+                | Refusal::OwnersAnswer
                 | Refusal::BadBound { .. },
             )
             | Self::Malformed(_) => StatusCode::UNPROCESSABLE_ENTITY,

@@ -63,9 +63,10 @@ impl Guest {
             let known = session.panel().people().get(&person);
             known.is_some_and(|person| !person.left)
         };
-        match app.teaching.look(session, view).await? {
-            true => Ok(guest),
-            false => Err(WebError::NotInvited),
+        if app.teaching.look(session, view).await? {
+            Ok(guest)
+        } else {
+            Err(WebError::NotInvited)
         }
     }
 
@@ -80,21 +81,17 @@ impl Guest {
 
 /// Sees to it that there is something for this person to do, if there can be: the
 /// entry that puts another question.
-pub(crate) fn another(
-    session: &Session,
-    leases: &Leases,
-    guest: Guest,
-) -> Result<Decision, WebError> {
+pub(crate) fn another(session: &Session, leases: &Leases, guest: Guest) -> Decision {
     // Each of them may have one at hand, and as many may wait for others.
     let most = 2 * session.panel().people().len();
     let further = match leases.turn(guest.session, session, guest.person) {
         None if session.open().count() < most => session.further(),
         _ => None,
     };
-    Ok(match further {
+    match further {
         Some(event) => Decision::Append(event),
         None => Decision::Already(Position::Thinking),
-    })
+    }
 }
 
 #[derive(Template)]
@@ -134,9 +131,10 @@ fn page(guest: Guest, session: &Session, leases: &Leases, notice: Option<String>
         Question::Membership { atom } => (BehaviourView::of(atom, session), None, false),
         Question::Comparison { first, second } => {
             let (first, second) = BehaviourView::pair(first, second, session);
-            match mirrored {
-                true => (second, Some(first), true),
-                false => (first, Some(second), false),
+            if mirrored {
+                (second, Some(first), true)
+            } else {
+                (first, Some(second), false)
             }
         }
         // Never an open question of theirs.
@@ -165,7 +163,7 @@ async fn show(State(app): State<AppState>, Path(key): Path<String>) -> Result<Re
 async fn put(app: &AppState, guest: Guest, notice: Option<String>) -> Result<Response, WebError> {
     let leases = app.teaching.leases();
     let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
-    let decide = move |session: &Session| another(session, &deciding, guest);
+    let decide = move |session: &Session| Ok(another(session, &deciding, guest));
     let view = move |session: &Session, _: &Position| page(guest, session, &viewing, notice);
     app.teaching.act(guest.session, decide, view).await
 }

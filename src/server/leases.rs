@@ -43,7 +43,8 @@ impl Leases {
 
     /// What this person is to do, as the session stands; none where nothing that is
     /// open is theirs to answer. A question comes with a lease, which looking at it
-    /// again does not prolong.
+    /// again does not prolong: after it others may have the question too, until
+    /// somebody answers it.
     pub(crate) fn turn(&self, id: SessionId, session: &Session, person: u32) -> Option<Turn> {
         if let Some(number) = session.panel().due(person) {
             return Some(Turn::Repeat(number));
@@ -51,13 +52,16 @@ impl Leases {
         let now = Instant::now();
         let mut held = self.held();
         let leases = held.entry(id).or_default();
-        leases.retain(|lease| lease.until > now && session.is_open(lease.number));
+        leases.retain(|lease| session.is_open(lease.number));
         let open: Vec<u32> = session.open_to(person).collect();
         let own = leases.iter().find(|lease| lease.person == person);
         if let Some(own) = own.filter(|own| open.contains(&own.number)) {
             return Some(Turn::Answer(own.number));
         }
-        let at_it = |number: u32| leases.iter().filter(|lease| lease.number == number).count();
+        let at_it = |number: u32| {
+            let current = leases.iter().filter(|lease| lease.until > now);
+            current.filter(|lease| lease.number == number).count()
+        };
         let free = open
             .into_iter()
             .find(|number| at_it(*number) < session.wanted(*number))?;

@@ -214,19 +214,19 @@ async fn alone(app: &AppState, id: SessionId) -> Result<Vec<AloneView>, WebError
             (answers, state, rule)
         };
         let (answers, state, rule) = app.teaching.look(theirs, standing).await?;
-        let rule = rule.map(|rule| match rules.iter().position(|known| *known == rule) {
-            Some(place) => place + 1,
-            None => {
+        let rule = rule.map(|rule| {
+            let known = rules.iter().position(|known| *known == rule);
+            known.unwrap_or_else(|| {
                 rules.push(rule);
-                rules.len()
-            }
+                rules.len() - 1
+            })
         });
         views.push(AloneView {
             name,
             home: format!("/sessions/{theirs}"),
             answers,
             state,
-            rule,
+            rule: rule.map(|place| place + 1),
         });
     }
     Ok(views)

@@ -114,7 +114,7 @@ async fn set_terms(State(app): State<AppState>, Path(id): Path<String>, body: Bo
 async fn turn(app: &AppState, guest: Guest) -> Answer {
     let leases = app.teaching.leases();
     let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
-    let decide = move |session: &Session| another(session, &deciding, guest);
+    let decide = move |session: &Session| Ok(another(session, &deciding, guest));
     let view = move |session: &Session, position: &Position| {
         let turn = viewing.turn(guest.session, session, guest.person);
         match turn {

@@ -10,6 +10,7 @@ use tempfile::TempDir;
 pub(crate) struct House {
     folder: TempDir,
     server: Server,
+    more: &'static [&'static str],
 }
 
 struct Server {
@@ -20,9 +21,18 @@ struct Server {
 impl House {
     /// On a fresh database.
     pub(crate) fn build() -> Self {
+        Self::build_with(&[])
+    }
+
+    /// On a fresh database, with these arguments more.
+    pub(crate) fn build_with(more: &'static [&'static str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let server = Server::start(&database(folder.path()));
-        Self { folder, server }
+        let server = Server::start(&database(folder.path()), more);
+        Self {
+            folder,
+            server,
+            more,
+        }
     }
 
     /// The address of the page at `path`, which begins with a slash.
@@ -33,7 +43,7 @@ impl House {
     /// Kills the server without a warning and starts another on its database.
     pub(crate) fn strike(&mut self) {
         self.server.kill();
-        self.server = Server::start(&database(self.folder.path()));
+        self.server = Server::start(&database(self.folder.path()), self.more);
     }
 }
 
@@ -42,10 +52,11 @@ fn database(folder: &Path) -> PathBuf {
 }
 
 impl Server {
-    fn start(database: &Path) -> Self {
+    fn start(database: &Path, more: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_memrep"))
             .args(["serve", "--addr", "127.0.0.1:0", "--database"])
             .arg(database)
+            .args(more)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()

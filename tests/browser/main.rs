@@ -13,6 +13,7 @@ mod driver;
 mod drives;
 mod house;
 mod page;
+mod people;
 mod pictures;
 mod recordings;
 mod robot;

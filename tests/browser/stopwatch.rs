@@ -12,7 +12,7 @@ use crate::page::{Page, script};
 use crate::robot::Reader;
 
 /// How long somebody looks at a card.
-const THINK: Duration = Duration::from_millis(1000);
+const THINK: Duration = Duration::from_secs(1);
 
 /// The sessions that are measured.
 const SEEDS: std::ops::Range<u64> = 0..5;

@@ -9,6 +9,7 @@ mod conflicts;
 mod desk;
 mod pages;
 mod parts;
+mod people;
 #[cfg(unix)]
 mod serve;
 mod site;

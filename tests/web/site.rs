@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::{Body, to_bytes};
@@ -75,6 +76,14 @@ impl Site {
 
     pub(crate) fn at(path: &Path) -> Self {
         Self::over(Sqlite::open(path).unwrap())
+    }
+
+    /// One where each of several people has a question for so long.
+    pub(crate) fn with_lease(lease: Duration) -> Self {
+        let store = Arc::new(Sqlite::in_memory().unwrap());
+        Self {
+            router: app(AppState::with_lease(store, lease)),
+        }
     }
 
     fn over(store: Sqlite) -> Self {
