@@ -141,12 +141,7 @@ impl Task {
     ///
     /// Names the JSON path of the first thing that is wrong, and what to do.
     pub fn from_json(value: &Value) -> Result<Self, Malformed> {
-        match read(value, Files::None) {
-            Ok(read) => Ok(read.task),
-            Err(first) => Err(first.into_iter().next().unwrap_or_else(|| {
-                Malformed::new("", "this is no task, look at `memrep task new` for one")
-            })),
-        }
+        taken(read(value, Files::None))
     }
 
     /// The content of a task file, TOML, as [`Self::from_json`] reads it.
@@ -277,7 +272,17 @@ impl TryFrom<Value> for Task {
     type Error = Malformed;
 
     fn try_from(value: Value) -> Result<Self, Malformed> {
-        Self::from_json(&value)
+        taken(read(&value, Files::Logged))
+    }
+}
+
+/// The task, or the first fault.
+fn taken(read: Result<Read, Vec<Malformed>>) -> Result<Task, Malformed> {
+    match read {
+        Ok(read) => Ok(read.task),
+        Err(faults) => Err(faults.into_iter().next().unwrap_or_else(|| {
+            Malformed::new("", "this is no task, look at `memrep task new` for one")
+        })),
     }
 }
 
@@ -289,7 +294,7 @@ impl TryFrom<Value> for Task {
 fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
     let fields = Fields::of(value, "").map_err(|fault| vec![fault])?;
     let mut faults = Faults::default();
-    let is_file = !matches!(files, Files::None);
+    let is_file = !matches!(files, Files::None | Files::Logged);
     if fields.get("target").is_some() && !is_file {
         faults.0.push(Malformed::new(
             "target",
@@ -326,7 +331,7 @@ fn read(value: &Value, files: Files<'_>) -> Result<Read, Vec<Malformed>> {
             }
             _ => None,
         };
-    if let Some(Some(practice)) = &practice {
+    if let (Some(Some(practice)), false) = (&practice, matches!(files, Files::Logged)) {
         let target = target.as_ref();
         faults.keep(examples::check_answer(
             practice, &examples, target, universe,

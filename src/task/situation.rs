@@ -116,6 +116,9 @@ impl Situation {
 pub(super) enum Files<'a> {
     /// None: the task came over the network.
     None,
+    /// None: the task was read before, and this is from a log. What is refused today
+    /// may have been taken then.
+    Logged,
     /// Those by a path that is relative to this folder.
     In(&'a Path),
     /// Any, but none is here to be looked at.
@@ -127,7 +130,7 @@ impl Files<'_> {
     pub(super) fn find(self, named: &str, path: &str) -> Result<PathBuf, Malformed> {
         match self {
             Files::In(folder) => Ok(folder.join(named)),
-            Files::None => Err(Malformed::new(
+            Files::None | Files::Logged => Err(Malformed::new(
                 path,
                 format!("`{named}`: a session reads no files, give the content itself"),
             )),
@@ -231,8 +234,8 @@ fn read_source(fields: &Fields<'_>, files: Files<'_>) -> Result<Source, Malforme
             path,
             "name the file of the recordings, one JSON object a line",
         )),
-        (Files::None, None, Some(upload)) => Ok(Source::Upload(upload)),
-        (Files::None, named, _) => {
+        (Files::None | Files::Logged, None, Some(upload)) => Ok(Source::Upload(upload)),
+        (Files::None | Files::Logged, named, _) => {
             let file = named.map_or_else(String::new, |file| format!("`{file}`: "));
             Err(Malformed::new(
                 path,

@@ -337,3 +337,18 @@ fn a_target_says_what_examples_and_prior_say() {
         assert!(faults[0].message.contains(part), "{faults:?}");
     }
 }
+
+/// A log keeps its task, whatever is refused since.
+#[test]
+fn what_was_taken_once_is_read_from_its_log() {
+    let content = json!({
+        "symbols": ["a"],
+        "examples": [{"word": ["a"], "label": true}],
+        "practice": {"word": ["a"], "answer": "reject", "why": "So it was."},
+    });
+    let refused = Task::from_json(&content).unwrap_err();
+    assert_eq!(refused.path, "practice.answer");
+    let task: Task = serde_json::from_value(content).unwrap();
+    let kept = serde_json::to_value(&task).unwrap();
+    assert_eq!(serde_json::from_value::<Task>(kept).unwrap(), task);
+}
