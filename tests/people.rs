@@ -261,7 +261,7 @@ fn some_reply(question: &Question<Atom, Concept>, random: &mut ChaCha8Rng) -> Re
 #[test]
 fn whims_leave_the_session_its_log() {
     let (mut pooled, mut unsaid, mut conflicts, mut repeats) = (0, 0, 0, 0);
-    for seed in 0..16 {
+    for seed in 0..10 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut kept = Kept::begin(["tomita:4", "tomita:7", "robot"][seed as usize % 3], seed);
         let people = random.random_range(1..5);
@@ -342,7 +342,7 @@ fn whims_leave_the_session_its_log() {
         kept.check_log();
     }
     assert!(
-        pooled > 150 && unsaid > 20 && conflicts > 0 && repeats > 10,
+        pooled > 100 && unsaid > 20 && conflicts > 0 && repeats > 10,
         "{pooled} {unsaid} {conflicts} {repeats}"
     );
 }
