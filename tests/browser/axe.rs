@@ -62,7 +62,7 @@ async fn all_hold(wishes: Wishes) {
             let session = client.current_url().await.unwrap().path().to_owned();
             page.click(client, "#answer-form .pad button").await;
             holds(client, &rules, &format!("{task}, answered")).await;
-            for part in ["history", "practice"] {
+            for part in ["history", "practice", "why", "people"] {
                 client
                     .goto(&house.at(&format!("{session}/{part}")))
                     .await
@@ -70,9 +70,47 @@ async fn all_hold(wishes: Wishes) {
                 holds(client, &rules, &format!("{task} {part}")).await;
             }
         }
+        studio_holds(client, &house, &rules).await;
         rule_holds(browser, &house, &rules).await;
     })
     .await;
+}
+
+/// The studio: empty, with a map to paint, with a fault, and the recordings after it.
+async fn studio_holds(client: &Client, house: &House, rules: &str) {
+    let robot = include_str!("../../examples/tasks/robot-recharge.toml");
+    let recorded = "name = \"runs\"\ntitle = \"Runs\"\n[world]\nkind = \"pool\"\n\
+        [[symbols]]\nname = \"water\"\n[[symbols]]\nname = \"dryer\"\n";
+    client.goto(&house.at("/studio")).await.unwrap();
+    holds(client, rules, "studio").await;
+    let page = Page::now(client).await;
+    let page = page
+        .click(client, ".studio-actions button[value=check]")
+        .await;
+    holds(client, rules, "studio with faults").await;
+    open(client, robot).await;
+    page.next(client).await;
+    holds(client, rules, "studio with a map").await;
+    open(client, recorded).await;
+    let page = Page::now(client).await;
+    let page = page
+        .click(client, ".studio-actions button[value=begin]")
+        .await;
+    assert_eq!(page.kind, "recordings");
+    holds(client, rules, "recordings").await;
+}
+
+/// Opens the text of a task file in the studio.
+async fn open(client: &Client, text: &str) {
+    let sent = "const form = Object.assign(document.createElement('form'),
+            { method: 'post', action: '/studio', enctype: 'multipart/form-data' });
+        for (const [name, value] of [['text', arguments[0]], ['do', 'open']]) {
+            form.append(Object.assign(document.createElement('textarea'), { name, value }));
+        }
+        document.querySelector('main').remove();
+        document.body.append(form);
+        form.submit();";
+    client.execute(sent, vec![Value::from(text)]).await.unwrap();
 }
 
 /// The pages of a rule: the check, a contradiction, the result.
@@ -112,21 +150,34 @@ async fn rule_holds(browser: &Browser, house: &House, rules: &str) {
     panic!("a lie led to no contradiction: {page:?}");
 }
 
+const WIDE: (u32, u32) = (1280, 960);
+const PHONE: (u32, u32) = (360, 740);
+
+/// In a window of this size.
+fn wishes(size: (u32, u32), dark: bool) -> Wishes {
+    Wishes {
+        size: Some(size),
+        dark,
+        ..Wishes::default()
+    }
+}
+
 #[tokio::test]
 async fn no_page_breaks_a_rule_of_accessibility() {
-    all_hold(Wishes {
-        size: Some((1280, 960)),
-        ..Wishes::default()
-    })
-    .await;
+    all_hold(wishes(WIDE, false)).await;
+}
+
+#[tokio::test]
+async fn no_page_breaks_a_rule_of_accessibility_in_the_dark() {
+    all_hold(wishes(WIDE, true)).await;
+}
+
+#[tokio::test]
+async fn no_page_breaks_a_rule_of_accessibility_on_a_phone() {
+    all_hold(wishes(PHONE, false)).await;
 }
 
 #[tokio::test]
 async fn no_page_breaks_a_rule_of_accessibility_on_a_phone_in_the_dark() {
-    all_hold(Wishes {
-        size: Some((360, 740)),
-        dark: true,
-        ..Wishes::default()
-    })
-    .await;
+    all_hold(wishes(PHONE, true)).await;
 }

@@ -62,15 +62,15 @@ async fn session(client: &Client, seed: u64) -> String {
     format!("/sessions/{}", id.as_str().unwrap())
 }
 
-/// Of these, in ascending order, the one that this share does not exceed.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = (share * sorted.len() as f64).ceil() as usize;
+/// Of these, in ascending order, the one that this many of a hundred do not exceed.
+fn quantile(sorted: &[f64], percent: usize) -> f64 {
+    let place = (percent * sorted.len()).div_ceil(100);
     sorted[place.clamp(1, sorted.len()) - 1]
 }
 
 fn tell(what: &str, mut times: Vec<f64>) {
     times.sort_by(f64::total_cmp);
-    let [half, most, all] = [0.5, 0.95, 1.0].map(|share| quantile(&times, share));
+    let [half, most, all] = [50, 95, 100].map(|percent| quantile(&times, percent));
     let cards = times.len();
     println!(
         "{what:<24} {cards:4} cards: median {half:6.1} ms, 95 % within {most:6.1} ms, longest {all:6.1} ms"
