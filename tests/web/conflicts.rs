@@ -129,6 +129,78 @@ async fn a_single_answer_is_spoken_of_as_one() {
     assert_eq!(seen["single"], 1);
 }
 
+/// What the page says would follow if this answer was withdrawn.
+fn follows(page: &str, number: u64) -> String {
+    let place = format!("id=\"follows-{number}\">");
+    let told = page.split(&place).nth(1).unwrap_or_default();
+    told.split('<').next().unwrap().to_owned()
+}
+
+/// What is said to follow is what follows.
+#[tokio::test]
+async fn what_follows_is_told_and_comes_true() {
+    let (mut agreed, mut still) = (0, 0);
+    for seed in 0..6 {
+        let site = Site::in_memory();
+        let target = Target::named("tomita:7").unwrap();
+        let settings = TeacherSettings {
+            order: Order::Random,
+            seed,
+            ..TeacherSettings::default()
+        };
+        let mut teacher = ScriptedTeacher::new(&target, settings);
+        let body =
+            json!({"task": "tomita:7", "strategy": "thesis", "seed": seed, "membership_cost": 8});
+        let api = create(&site, body).await;
+        let page = api.replace("/api/v1", "");
+        let mut compared = Vec::new();
+        loop {
+            let question = site.get(&format!("{api}/question")).await.json();
+            if question["kind"] == "done" {
+                break;
+            }
+            let reply = answer(&mut teacher, target.dfa().alphabet(), &question);
+            if ["first", "second"]
+                .iter()
+                .any(|said| reply["answer"] == *said)
+            {
+                compared.push(reply.clone());
+            }
+            site.post(&format!("{api}/answers"), reply).await;
+        }
+        // One lie after another, until there is no more to mend.
+        for reply in compared.iter().step_by(2) {
+            let lie = if reply["answer"] == "first" {
+                "second"
+            } else {
+                "first"
+            };
+            let lie = json!({"question": reply["question"], "answer": lie});
+            site.post(&format!("{api}/changes"), lie).await;
+        }
+        for _ in 0..compared.len() {
+            let now = site.get(&format!("{api}/question")).await.json();
+            if now["kind"] != "conflict" {
+                break;
+            }
+            let number = now["answers"][0].as_u64().unwrap();
+            let told = follows(&site.get(&page).await.text, number);
+            let body = json!({"question": number});
+            let then = site.post(&format!("{api}/retractions"), body).await.json();
+            let is_conflict = then["kind"] == "conflict";
+            assert_eq!(told.contains("still can’t"), is_conflict, "{told}: {then}");
+            assert_eq!(
+                told.contains("your answers agree"),
+                !is_conflict,
+                "{told}: {then}"
+            );
+            agreed += usize::from(!is_conflict);
+            still += usize::from(is_conflict);
+        }
+    }
+    assert!(agreed > 0 && still > 0, "{agreed}, {still}");
+}
+
 async fn check(
     site: &Site,
     id: &str,
@@ -148,6 +220,10 @@ async fn check(
     let page = site.get(&format!("/sessions/{id}")).await.text;
     assert!(page.contains(message), "{message}: {page}");
     assert!(page.contains(&heading(answers.len())), "{page}");
+    for number in &answers {
+        let told = follows(&page, *number);
+        assert!(told.starts_with("Then "), "question {number}: {told}");
+    }
     assert_eq!(page.contains("allow more states"), cause == "states");
     let mend = match (single, cause) {
         (true, "states") => "if it is wrong, change or withdraw it.",

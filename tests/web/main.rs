@@ -1,6 +1,7 @@
 //! The server from its store to its pages, through public doors.
 #![cfg(feature = "server")]
 
+mod ahead;
 mod api;
 mod check;
 mod classes;

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::{Body, to_bytes};
-use axum::http::{HeaderMap, Method, Request, StatusCode};
+use axum::http::{HeaderMap, Method, Request, Response, StatusCode};
 use memrep::server::{AppState, app};
 use memrep::store::Sqlite;
 use serde_json::Value;
@@ -90,6 +90,11 @@ impl Site {
         Self {
             router: app(AppState::new(Arc::new(store))),
         }
+    }
+
+    /// What comes back, before its body has.
+    pub(crate) async fn open(&self, request: Request<Body>) -> Response<Body> {
+        self.router.clone().oneshot(request).await.unwrap()
     }
 
     pub(crate) async fn send(&self, request: Request<Body>) -> Reply {
