@@ -45,6 +45,7 @@ struct StartPage {
     shell: Shell,
     notice: Option<String>,
     tasks: Vec<TaskCard>,
+    classics: Vec<TaskCard>,
     sessions: Vec<SessionCard>,
     own: OwnForm,
     faults: Faults,
@@ -87,10 +88,17 @@ async fn start_page(
     file: SentFile,
 ) -> Result<Response, WebError> {
     let sessions = app.teaching.list(20).await?;
+    // Rules over symbols that stand for nothing come last.
+    let worded = |task: &Task| task.symbols.iter().any(|symbol| symbol.word.is_some());
+    let bare = |task: &Task| task.class.is_none() && !worded(task);
+    let (classics, tasks): (Vec<Task>, Vec<Task>) = offered().partition(bare);
+    let cards = |tasks: Vec<Task>| tasks.into_iter().map(task_card).collect();
+    let (tasks, classics) = (cards(tasks), cards(classics));
     Ok(render(&StartPage {
         shell: Shell::plain("Teach a rule"),
         notice: None,
-        tasks: offered().map(task_card).collect(),
+        tasks,
+        classics,
         sessions: sessions.iter().filter_map(session_card).collect(),
         own,
         faults,

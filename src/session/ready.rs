@@ -129,7 +129,7 @@ fn robot() -> Task {
     let rejected = ["", "R", "RY", "YR", "BR", "RB", "OR", "RO"].map(example(false));
     Task {
         name: "robot".to_owned(),
-        title: "Robot recharge".to_owned(),
+        title: "The robot in words alone".to_owned(),
         class: None,
         symbols: vec![
             symbol("R", "lava"),

@@ -58,7 +58,7 @@ pub enum AlphabetError {
     },
     /// A name stands twice.
     #[error(
-        "symbol `{name}` is named twice, at {first} and {second}: give every symbol its own name"
+        "symbol `{name}` is named twice, as number {} and {}: give every symbol its own name", first + 1, second + 1
     )]
     Duplicate {
         /// The name that is repeated.
