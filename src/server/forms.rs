@@ -126,8 +126,15 @@ pub(crate) fn task_content(text: &str) -> Result<Value, String> {
 pub(crate) struct Form(Vec<(String, String)>);
 
 impl Form {
-    /// The fields of a form body.
-    pub(crate) fn new(fields: Vec<(String, String)>) -> Self {
+    /// The fields of a form body. Of control characters only those stay that people
+    /// type: the others cannot stand in the page that shows a fault.
+    pub(crate) fn new(mut fields: Vec<(String, String)>) -> Self {
+        let unshown = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+        for (_, value) in &mut fields {
+            if value.contains(unshown) {
+                *value = value.replace(unshown, "\u{fffd}");
+            }
+        }
         Self(fields)
     }
 

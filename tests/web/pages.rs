@@ -152,6 +152,15 @@ async fn an_own_task_is_read_or_its_fault_named() {
             "what was typed is kept"
         );
     }
+    let reply = site
+        .form("/sessions", &[("symbols", "a \u{0}\u{1b}<i>")])
+        .await;
+    assert_eq!(reply.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert!(
+        !reply.text.contains(['\u{0}', '\u{1b}']),
+        "no page can have these"
+    );
+    assert!(!reply.text.contains("<i>"));
 }
 
 #[tokio::test]
