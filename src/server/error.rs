@@ -114,6 +114,7 @@ impl WebError {
                 Refusal::BadName => "bad_name",
                 Refusal::TooManyPeople => "too_many_people",
                 Refusal::NoPerson => "not_invited",
+                Refusal::Said { .. } => "already_answered",
                 Refusal::OwnersAnswer => "owners_answer",
             },
             Self::Malformed(_) => "malformed",
@@ -134,9 +135,10 @@ impl WebError {
         match self {
             Self::Malformed(malformed) if !malformed.path.is_empty() => Some(&malformed.path),
             Self::Refused(refusal) => match refusal {
-                Refusal::Closed { .. } | Refusal::Unknown { .. } | Refusal::NotStanding { .. } => {
-                    Some("question")
-                }
+                Refusal::Closed { .. }
+                | Refusal::Unknown { .. }
+                | Refusal::NotStanding { .. }
+                | Refusal::Said { .. } => Some("question"),
                 Refusal::Unfit { .. } | Refusal::Outdated { .. } => Some("answer"),
                 Refusal::NoCounterexample { .. } => Some("label"),
                 Refusal::Infeasible { .. } | Refusal::Settled { .. } => Some("word"),

@@ -118,6 +118,12 @@ pub enum Refusal {
     /// The person does not answer here, or not any more.
     #[error("this link does not answer here any more: ask whoever sent it for a new one")]
     NoPerson,
+    /// The person has answered it otherwise.
+    #[error("you have answered question {number} before: withdraw that answer to give another")]
+    Said {
+        /// The question.
+        number: u32,
+    },
     /// The answer needs the rule on the table.
     #[error("only the owner of the session says whether a rule is right")]
     OwnersAnswer,

@@ -154,8 +154,11 @@ impl Session {
         {
             return Ok(Decision::Already(self.position().clone()));
         }
-        if said.is_some() || !self.is_open(number) {
+        if !self.is_open(number) {
             return Err(self.not_open(number));
+        }
+        if said.is_some() {
+            return Err(Refusal::Said { number });
         }
         self.check_fit(number, reply)?;
         Ok(Decision::Append(Event::Said {

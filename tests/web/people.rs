@@ -257,6 +257,9 @@ async fn a_disagreement_is_shown_and_resolved() {
         _ => ("first", "second"),
     };
     say(&site, &people[0], &question, one).await;
+    let otherwise = say(&site, &people[0], &question, other).await;
+    assert_eq!(otherwise.status, StatusCode::CONFLICT);
+    assert_eq!(otherwise.json()["error"]["code"], "already_answered");
     say(&site, &people[1], &question, other).await;
     let told = site.get(&format!("{session}/people")).await.json();
     assert_eq!(told["disputes"], json!([question["number"]]), "{told}");
