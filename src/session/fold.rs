@@ -97,8 +97,14 @@ impl Session {
                 self.hear(*number, opinion)
             }
             Event::Unsaid { number, person } => {
+                let pooled = self.panel.pooled(*number);
                 self.panel.unsay(*number, *person)?;
-                self.reopen(*number)
+                let standing = self.answer_to(*number).map(|standing| &standing.reply);
+                // What the owner decided otherwise stands, whatever people come to.
+                if standing.is_some() && standing == pooled.as_ref() {
+                    self.reopen(*number)?;
+                }
+                Ok(())
             }
             Event::Repeated {
                 number,

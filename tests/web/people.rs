@@ -292,6 +292,8 @@ async fn a_disagreement_is_shown_and_resolved() {
         .post(&format!("{}/retractions", people[0]), taken)
         .await;
     assert_eq!(taken.status, StatusCode::OK, "{}", taken.text);
+    let state = site.get(&session).await.json();
+    assert_eq!(state["answers"], json!([question["number"]]));
 }
 
 #[tokio::test]
