@@ -70,6 +70,18 @@ impl Session {
                 self.arrive(Position::Done(hypothesis));
                 Ok(())
             }
+            Event::Terms { .. }
+            | Event::Invited { .. }
+            | Event::Dismissed { .. }
+            | Event::Said { .. }
+            | Event::Unsaid { .. }
+            | Event::Repeated { .. } => self.fold_panel(event),
+        }
+    }
+
+    /// What is told of several people.
+    fn fold_panel(&mut self, event: &Event) -> Result<(), String> {
+        match event {
             Event::Terms { terms } => {
                 self.panel.set_terms(terms.clone());
                 // Fewer answers may be wanted now.
@@ -114,6 +126,7 @@ impl Session {
                 let reply = reply.read(&self.universe).map_err(|e| e.to_string())?;
                 self.panel.repeat(*number, *person, &reply)
             }
+            _ => Err("it is told of no people".to_owned()),
         }
     }
 
