@@ -2,50 +2,74 @@
 
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context as _, bail};
+use clap::ArgMatches;
 use tokio::net::TcpListener;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
 
+use super::settings;
 use crate::server::{self, AppState};
 use crate::store::Sqlite;
 
 /// How long work that nobody waits for any more may go on at the end.
 const LAST_WORK: Duration = Duration::from_secs(1);
 
-/// Arguments of `memrep serve`.
+/// Arguments of `memrep serve`, and with that all settings of the server.
+///
+/// A new setting is a field here, and nothing else: an option `--idle-time` becomes
+/// the variable `MEMREP_IDLE_TIME` and the key `idle_time` of `memrep.toml`, and is
+/// told by `memrep config`. `Option<T>` is one that need not hold, `Vec<T>` one that
+/// may be said several times (an array in the file), `bool` a switch, `u16` to `u64`
+/// a number in the file, and anything else a string there. One whose name ends in
+/// `password` is never shown, nor is a password in an address (`scheme://user:…@`).
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:
+#[command(
+    after_help = "Every option but --config is also a key of memrep.toml and a variable of the
+environment: --lease is `lease` and MEMREP_LEASE. A flag counts before the
+environment, and that before the file; `memrep config` tells what holds and why.
+
+Examples:
   memrep serve
   memrep serve --addr 127.0.0.1:9000 --database lab.db
-  RUST_LOG=debug memrep serve")]
+  MEMREP_LOG=debug memrep serve
+  memrep serve --config /etc/memrep.toml"
+)]
 pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
-    addr: SocketAddr,
+    pub(super) addr: SocketAddr,
     /// The database file in which sessions are kept; created if there is none.
     #[arg(long, value_name = "PATH", default_value = "memrep.db")]
-    database: PathBuf,
+    pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.
     #[arg(long, value_name = "SECONDS", default_value = "120",
           value_parser = clap::value_parser!(u32).range(1..=86400))]
-    lease: u32,
+    pub(super) lease: u32,
+    /// What is logged: error, warn, info, debug, trace or off, also by the part of
+    /// the program, as in `info,memrep::server=debug`. `RUST_LOG` is heard too.
+    #[arg(long, value_name = "LEVEL", default_value = "info")]
+    pub(super) log: Targets,
+    /// A file of settings; without it memrep.toml in the working folder, if it is there.
+    #[arg(long, value_name = "FILE")]
+    pub(super) config: Option<PathBuf>,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: Args) -> anyhow::Result<ExitCode> {
+/// Runs the command, given how it was called.
+pub(super) fn run(flags: &ArgMatches) -> anyhow::Result<ExitCode> {
+    let (args, _) = settings::resolve::<Args>(flags)?;
     refuse_public(args.addr.ip())?;
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
+    tracing_subscriber::registry()
+        .with(tracing_subscriber::fmt::layer().with_writer(std::io::stderr))
+        .with(args.log.clone())
         .init();
-    // The port first: a second server on the same port must not touch the file.
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
@@ -74,14 +98,15 @@ async fn serve(args: Args) -> anyhow::Result<()> {
             ));
         }
     };
-    let store = Sqlite::open(&args.database)?;
+    // The port first: a second server on the same port must not touch the file.
+    let store = Sqlite::open(Path::new(&args.database))?;
     let lease = Duration::from_secs(args.lease.into());
     let at = listener.local_addr().context("the address is unknown")?;
     let stop = stop_signal()?;
     println!("memrep is at http://{at}/");
     println!(
         "Sessions are kept in {}. Stop with Ctrl+C.",
-        args.database.display()
+        settings::masked(&args.database)
     );
     server::run(listener, AppState::with_lease(Arc::new(store), lease), stop)
         .await
