@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::{Mutex as AsyncMutex, Semaphore};
 
@@ -11,6 +11,7 @@ use super::ahead::{Foresight, Trial};
 use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
+use super::metrics::{Clock, Metrics};
 use super::upload::{Pools, Upload};
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
 use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, StoredFile};
@@ -30,6 +31,7 @@ type Slot = AsyncMutex<Option<Session>>;
 struct Archive {
     store: Arc<dyn Store>,
     pools: Pools,
+    metrics: Arc<Metrics>,
 }
 
 /// All sessions of a store, and the pool on which they think.
@@ -51,10 +53,19 @@ struct Loaded {
 impl Teaching {
     /// Sessions of `store`, of which at most `width` think at the same time; each of
     /// several people has a question for as long as `lease`.
-    pub(crate) fn new(store: Arc<dyn Store>, width: usize, lease: Duration) -> Self {
+    pub(crate) fn new(
+        store: Arc<dyn Store>,
+        width: usize,
+        lease: Duration,
+        metrics: Arc<Metrics>,
+    ) -> Self {
         let pools = Pools::default();
         Self {
-            archive: Arc::new(Archive { store, pools }),
+            archive: Arc::new(Archive {
+                store,
+                pools,
+                metrics,
+            }),
             loaded: Mutex::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
             foresight: Arc::new(Foresight::new(width)),
@@ -69,7 +80,7 @@ impl Teaching {
         let id = SessionId::random().map_err(WebError::internal)?;
         let archive = Arc::clone(&self.archive);
         self.on_pool(move || {
-            let Archive { store, pools } = &*archive;
+            let Archive { store, pools, .. } = &*archive;
             let world = pools.world(&**store, &task)?;
             let upload = match (world, task.upload()) {
                 (Some(world), Some(named)) => {
@@ -169,6 +180,12 @@ impl Teaching {
         .await
     }
 
+    /// How many sessions are in memory.
+    pub(crate) fn in_memory(&self) -> usize {
+        let loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
+        loaded.slots.len()
+    }
+
     /// The store, for what is read piece by piece.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         Arc::clone(&self.archive.store)
@@ -198,13 +215,15 @@ impl Teaching {
         let permits = Arc::clone(&self.permits);
         let (foresight, live) = (Arc::clone(&self.foresight), Arc::clone(&self.live));
         let work = async move {
+            let wait = archive.metrics.wait();
             let mut held = slot.lock_owned().await;
             let permit = Arc::clone(&permits).acquire_owned().await;
             let permit = permit.map_err(WebError::internal)?;
+            let turn = wait.over();
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
-                let _permit = permit;
+                let (_permit, _turn) = (permit, turn);
                 let mut session = match held.take() {
                     Some(session) => session,
                     None => load(&archive, &id)?,
@@ -336,6 +355,7 @@ fn advance(
     foresight: &Foresight,
 ) -> Result<Position, WebError> {
     loop {
+        let clock = Clock::start();
         let already = match decide(session)? {
             Decision::Append(event) => {
                 let appended = match foresight.take(*id, session, &event) {
@@ -351,6 +371,9 @@ fn advance(
         };
         while let Some(event) = session.think() {
             append(archive, id, session, &event)?;
+        }
+        if already.is_none() {
+            archive.metrics.chosen(&clock);
         }
         return Ok(match already {
             Some(position) if position != Position::Thinking => position,
@@ -401,8 +424,12 @@ fn append(
 /// Appends an entry to the store; `false` if another writer was faster.
 fn keep(archive: &Archive, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
     let body = serde_json::to_string(event).map_err(WebError::internal)?;
+    let begun = Instant::now();
     match archive.store.append(id, seq, &body) {
-        Ok(()) => Ok(true),
+        Ok(()) => {
+            archive.metrics.appended(event, begun.elapsed());
+            Ok(true)
+        }
         Err(StoreError::Taken { .. }) => Ok(false),
         Err(error) => Err(WebError::internal(error)),
     }

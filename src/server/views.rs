@@ -127,6 +127,8 @@ struct ErrorPage {
     shell: Shell,
     heading: &'static str,
     message: String,
+    /// The request's name, by which its line in the log is found.
+    request: Option<String>,
     wait: bool,
 }
 
@@ -144,6 +146,7 @@ pub(crate) fn error_page(error: &WebError) -> Response {
         shell: Shell::plain(heading),
         heading,
         message: error.message(),
+        request: error.told_by(),
         wait,
     };
     let mut response = (status, render(&page)).into_response();
