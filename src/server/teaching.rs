@@ -369,10 +369,12 @@ fn advance(
             }
             Decision::Already(position) => Some(position),
         };
+        let mut thought = already.is_none();
         while let Some(event) = session.think() {
             append(archive, id, session, &event)?;
+            thought = true;
         }
-        if already.is_none() {
+        if thought {
             archive.metrics.chosen(&clock);
         }
         return Ok(match already {
