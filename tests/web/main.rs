@@ -8,12 +8,15 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod health;
 mod pages;
 mod parts;
 mod people;
 #[cfg(unix)]
 mod serve;
 mod site;
+#[cfg(unix)]
+mod stop;
 mod store;
 mod studio;
 mod upload_faults;
