@@ -9,8 +9,10 @@ mod ahead;
 mod api;
 mod assets;
 mod behaviour;
+mod busy;
 mod chart;
 mod check;
+mod desks;
 mod done;
 mod drive;
 mod error;
@@ -76,7 +78,7 @@ const FAREWELL: Duration = Duration::from_secs(3);
 /// What all requests share.
 #[derive(Clone)]
 pub struct AppState {
-    teaching: Arc<Teaching>,
+    teaching: Teaching,
 }
 
 impl AppState {
@@ -91,7 +93,14 @@ impl AppState {
     pub fn with_lease(store: Arc<dyn Store>, lease: Duration) -> Self {
         let width = std::thread::available_parallelism().map_or(2, usize::from);
         Self {
-            teaching: Arc::new(Teaching::new(store, width, lease)),
+            teaching: Teaching::new(store, width, lease),
+        }
+    }
+
+    /// The same for scripts, which rather wait than ask again.
+    fn patient(&self) -> Self {
+        Self {
+            teaching: self.teaching.patient(),
         }
     }
 }
@@ -132,9 +141,8 @@ pub fn app(state: AppState) -> Router {
         ApiError(WebError::Foreign).into_response()
     });
     Router::new()
-        .nest("/api/v1", api)
-        .merge(pages)
-        .with_state(state)
+        .nest("/api/v1", api.with_state(state.patient()))
+        .merge(pages.with_state(state))
         .layer(same_site)
         .layer(from_fn(guard::host))
         .layer(from_fn(guard::headers))
@@ -178,10 +186,10 @@ pub async fn run(
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
-    let teaching = Arc::clone(&state.teaching);
+    let teaching = state.teaching.clone();
     let server = axum::serve(listener, app(state)).with_graceful_shutdown(async move {
         shutdown.await;
-        teaching.live().end();
+        teaching.end();
         let _ = stopping.send(());
     });
     let farewell = async {

@@ -179,10 +179,7 @@ fn work(inbox: &Receiver<Task>, outbox: &Sender<Done>) {
     let meter = Meter::default();
     let mut solver = varisat::Solver::new();
     // The other formats panic on assumptions.
-    solver.write_proof(
-        meter.clone(),
-        varisat::solver::ProofFormat::Varisat,
-    );
+    solver.write_proof(meter.clone(), varisat::solver::ProofFormat::Varisat);
     let mut variables = Vec::new();
     while let Ok(task) = inbox.recv() {
         // Loading clauses writes too, and has to be done however long they are.
