@@ -17,6 +17,7 @@ use super::{output, serve};
   memrep config --config lab.toml --format json
 
 Exit status: 0, or 2 if a setting is wrong; what is wrong is told with its place.")]
+#[group(skip)]
 pub(super) struct Args {
     /// As a table for people, or one JSON object a setting.
     #[arg(long, value_enum, default_value_t)]

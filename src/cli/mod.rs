@@ -11,6 +11,8 @@ mod equivalent;
 mod files;
 mod identify;
 mod learn;
+#[cfg(feature = "server")]
+mod log;
 mod output;
 #[cfg(feature = "server")]
 mod serve;

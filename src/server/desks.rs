@@ -127,6 +127,11 @@ impl Desks {
         }
     }
 
+    /// How many sessions are in memory.
+    pub(crate) fn len(&self) -> usize {
+        self.kept().desks.len()
+    }
+
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -7,6 +7,7 @@ use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
+use super::observe;
 use super::upload::{RECORDINGS, UPLOAD_LIMIT};
 use super::views;
 use crate::session::{Corrupt, Malformed, Refusal};
@@ -201,6 +202,12 @@ impl WebError {
         }
     }
 
+    /// The name under which the log has the cause; none where the message says all.
+    pub(crate) fn told_by(&self) -> Option<String> {
+        let is_ours = self.status() == StatusCode::INTERNAL_SERVER_ERROR;
+        is_ours.then(observe::request_id).flatten()
+    }
+
     fn log(&self) {
         match self {
             Self::Internal(cause) => tracing::error!(%cause, "request failed"),
@@ -260,6 +267,9 @@ impl IntoResponse for ApiError {
         let mut error = json!({"code": self.0.code(), "message": self.0.message()});
         if let Some(field) = self.0.field() {
             error["field"] = field.into();
+        }
+        if let Some(id) = self.0.told_by() {
+            error["request"] = id.into();
         }
         let mut response = (self.0.status(), Json(json!({ "error": error }))).into_response();
         if matches!(self.0, WebError::Slow) {

@@ -12,6 +12,7 @@ use super::desks::Desks;
 use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
+use super::metrics::{Clock, Metrics};
 use super::upload::{Pools, Upload};
 use crate::evidence::Stop;
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
@@ -29,6 +30,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 struct Archive {
     store: Arc<dyn Store>,
     pools: Pools,
+    metrics: Arc<Metrics>,
 }
 
 /// All sessions of a store, and the pool on which they think.
@@ -49,10 +51,19 @@ pub(crate) struct Teaching {
 impl Teaching {
     /// Sessions of `store`, of which at most `width` think at the same time; each of
     /// several people has a question for as long as `lease`.
-    pub(crate) fn new(store: Arc<dyn Store>, width: usize, lease: Duration) -> Self {
+    pub(crate) fn new(
+        store: Arc<dyn Store>,
+        width: usize,
+        lease: Duration,
+        metrics: Arc<Metrics>,
+    ) -> Self {
         let pools = Pools::default();
         Self {
-            archive: Arc::new(Archive { store, pools }),
+            archive: Arc::new(Archive {
+                store,
+                pools,
+                metrics,
+            }),
             desks: Arc::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
@@ -87,7 +98,7 @@ impl Teaching {
         let id = SessionId::random().map_err(WebError::internal)?;
         let archive = Arc::clone(&self.archive);
         self.on_pool(move || {
-            let Archive { store, pools } = &*archive;
+            let Archive { store, pools, .. } = &*archive;
             let world = pools.world(&**store, &task)?;
             let upload = match (world, task.upload()) {
                 (Some(world), Some(named)) => {
@@ -187,6 +198,11 @@ impl Teaching {
         .await
     }
 
+    /// How many sessions are in memory.
+    pub(crate) fn in_memory(&self) -> usize {
+        self.desks.len()
+    }
+
     /// The store, for what is read piece by piece.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         Arc::clone(&self.archive.store)
@@ -215,9 +231,11 @@ impl Teaching {
         let desk = self.desks.of(id);
         let _waiting = desk.wait();
         let work = async move {
+            let wait = here.archive.metrics.wait();
             let mut held = desk.session().lock_owned().await;
             let permit = Arc::clone(&here.permits).acquire_owned().await;
             let permit = permit.map_err(WebError::internal)?;
+            let turn = wait.over();
             let stop = desk.begin();
             if here.over.is_set() {
                 stop.set();
@@ -225,7 +243,7 @@ impl Teaching {
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
-                let _permit = permit;
+                let (_permit, _turn) = (permit, turn);
                 let begun = Instant::now();
                 let (archive, foresight) = (&here.archive, &here.foresight);
                 let mut session = match held.take() {
@@ -338,6 +356,7 @@ fn advance(
     stop: &Stop,
 ) -> Result<Position, WebError> {
     loop {
+        let clock = Clock::start();
         let already = match decide(session)? {
             Decision::Append(event) => {
                 let appended = match foresight.take(*id, session, &event) {
@@ -356,6 +375,9 @@ fn advance(
         }
         if stop.is_set() && *session.position() == Position::Thinking {
             return Err(WebError::Slow);
+        }
+        if already.is_none() {
+            archive.metrics.chosen(&clock);
         }
         return Ok(match already {
             Some(position) if position != Position::Thinking => position,
@@ -406,8 +428,12 @@ fn append(
 /// Appends an entry to the store; `false` if another writer was faster.
 fn keep(archive: &Archive, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
     let body = serde_json::to_string(event).map_err(WebError::internal)?;
+    let begun = Instant::now();
     match archive.store.append(id, seq, &body) {
-        Ok(()) => Ok(true),
+        Ok(()) => {
+            archive.metrics.appended(event, begun.elapsed());
+            Ok(true)
+        }
         Err(StoreError::Taken { .. }) => Ok(false),
         Err(error) => Err(WebError::internal(error)),
     }

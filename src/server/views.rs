@@ -126,6 +126,8 @@ struct ErrorPage {
     shell: Shell,
     heading: &'static str,
     message: String,
+    /// The request's name, by which its line in the log is found.
+    request: Option<String>,
     wait: bool,
 }
 
@@ -153,6 +155,7 @@ pub(crate) fn error_page(error: &WebError) -> Response {
         } else {
             error.message()
         },
+        request: error.told_by(),
         wait,
     };
     (status, render(&page)).into_response()

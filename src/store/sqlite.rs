@@ -223,6 +223,26 @@ impl Store for Sqlite {
     fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError> {
         files::chunk(&self.connection(), file, place)
     }
+
+    fn probe(&self) -> Result<(), StoreError> {
+        self.connection()
+            .prepare_cached("SELECT id FROM sessions LIMIT 1")?
+            .exists([])?;
+        Ok(())
+    }
+
+    fn count(&self) -> Result<u64, StoreError> {
+        let connection = self.connection();
+        let mut statement = connection.prepare_cached("SELECT count(*) FROM sessions")?;
+        let count: i64 = statement.query_row([], |row| row.get(0))?;
+        Ok(count.cast_unsigned())
+    }
+
+    fn rest(&self) -> Result<(), StoreError> {
+        let connection = self.connection();
+        connection.pragma_update(None, "wal_checkpoint", "TRUNCATE")?;
+        Ok(())
+    }
 }
 
 fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {
