@@ -2,7 +2,8 @@
 //! a page by the pages.
 
 use axum::Json;
-use axum::http::StatusCode;
+use axum::http::header::RETRY_AFTER;
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
@@ -188,7 +189,7 @@ impl WebError {
                 "This session learns no automaton: take its rule from `/concept`.".to_owned()
             }
             Self::Slow => {
-                "The next question is still being worked out. Your answer is kept: ask again in a moment."
+                "The next question is still being worked out: many rules fit what was said, and they are compared. Your answers are kept: ask again in a moment."
                     .to_owned()
             }
             Self::Corrupt(corrupt) => sentence(&format!(
@@ -270,7 +271,12 @@ impl IntoResponse for ApiError {
         if let Some(id) = self.0.told_by() {
             error["request"] = id.into();
         }
-        (self.0.status(), Json(json!({ "error": error }))).into_response()
+        let mut response = (self.0.status(), Json(json!({ "error": error }))).into_response();
+        if matches!(self.0, WebError::Slow) {
+            let soon = HeaderValue::from_static("1");
+            response.headers_mut().insert(RETRY_AFTER, soon);
+        }
+        response
     }
 }
 

@@ -9,8 +9,10 @@ mod ahead;
 mod api;
 mod assets;
 mod behaviour;
+mod busy;
 mod chart;
 mod check;
+mod desks;
 mod done;
 mod drive;
 mod error;
@@ -80,7 +82,7 @@ const FAREWELL: Duration = Duration::from_secs(3);
 /// What all requests share.
 #[derive(Clone)]
 pub struct AppState {
-    teaching: Arc<Teaching>,
+    teaching: Teaching,
     metrics: Arc<Metrics>,
     /// Whose turn it is to ask whether the store is well.
     probes: Arc<Semaphore>,
@@ -101,10 +103,18 @@ impl AppState {
         let width = std::thread::available_parallelism().map_or(2, usize::from);
         let metrics = Arc::new(Metrics::default());
         Self {
-            teaching: Arc::new(Teaching::new(store, width, lease, Arc::clone(&metrics))),
+            teaching: Teaching::new(store, width, lease, Arc::clone(&metrics)),
             metrics,
             probes: Arc::new(Semaphore::new(1)),
             figures_apart: false,
+        }
+    }
+
+    /// The same for scripts, which rather wait than ask again.
+    fn patient(&self) -> Self {
+        Self {
+            teaching: self.teaching.patient(),
+            ..self.clone()
         }
     }
 
@@ -155,9 +165,8 @@ pub fn app(state: AppState) -> Router {
         ApiError(WebError::Foreign).into_response()
     });
     Router::new()
-        .nest("/api/v1", api)
-        .merge(pages)
-        .with_state(state.clone())
+        .nest("/api/v1", api.with_state(state.patient()))
+        .merge(pages.with_state(state.clone()))
         .layer(same_site)
         .layer(from_fn(guard::host))
         .merge(health::routes(state.clone()))
@@ -186,11 +195,11 @@ pub async fn run(
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
-    let teaching = Arc::clone(&state.teaching);
+    let teaching = state.teaching.clone();
     let app = app(state).into_make_service_with_connect_info::<SocketAddr>();
     let server = axum::serve(listener, app).with_graceful_shutdown(async move {
         shutdown.await;
-        teaching.live().end();
+        teaching.end();
         let _ = stopping.send(());
     });
     let farewell = async {

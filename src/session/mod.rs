@@ -35,6 +35,7 @@ pub use ready::{NAMES as READY_NAMES, offered, ready};
 pub use samples::{Claim, RISK, SHEET, Samples};
 
 use self::pupil::Pupil;
+use crate::evidence::Stop;
 use crate::identify::Contradiction;
 use crate::learner::{Counts, Left, Question, Removed, Reply, Round, Step};
 pub use crate::task::{
@@ -204,10 +205,16 @@ impl Session {
     ///
     /// This is the only work here that takes time, at most the budget.
     pub fn think(&mut self) -> Option<Event> {
+        self.think_until(&Stop::default())
+    }
+
+    /// The same, or nothing, and soon, once `stop` is set: the session is then
+    /// thinking still.
+    pub fn think_until(&mut self, stop: &Stop) -> Option<Event> {
         if self.position != Position::Thinking {
             return None;
         }
-        Some(match self.learner.next() {
+        Some(match self.learner.next_until(stop)? {
             Step::Ask {
                 question,
                 round,
@@ -261,7 +268,7 @@ impl Session {
         if !matches!(self.position, Position::Asking(_)) {
             return None;
         }
-        self.learner.next();
+        self.learner.next_until(&Stop::default());
         self.learner.outlook()?.rivals
     }
 
