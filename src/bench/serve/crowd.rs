@@ -27,6 +27,7 @@ pub(super) struct Ledger {
     met: Mutex<Written>,
     ended: AtomicU64,
     reconnects: AtomicU64,
+    put_off: AtomicU64,
     over: AtomicBool,
 }
 
@@ -52,6 +53,11 @@ impl Ledger {
 
     pub(super) fn failed(&self, error: &ClientError) {
         *self.written().errors.entry(error.kind()).or_default() += 1;
+    }
+
+    /// Somebody was told that the server is still thinking.
+    pub(super) fn put_off(&self) {
+        self.put_off.fetch_add(1, Ordering::Relaxed);
     }
 
     pub(super) fn reconnected(&self, times: u64) {
@@ -97,7 +103,7 @@ impl Crowd {
     pub async fn watch(&mut self, lasting: Duration) -> Met {
         // What was met before does not count: not all were there.
         drop(std::mem::take(&mut *self.ledger.written()));
-        let (ended, reconnects) = (self.ended(), self.reconnects());
+        let (ended, reconnects, put_off) = (self.ended(), self.reconnects(), self.put_off());
         let (begun, own) = (Instant::now(), process_cpu());
         let first = Figures::of(self.address).await;
         let mut memory = first.as_ref().and_then(|figures| figures.memory);
@@ -123,6 +129,7 @@ impl Crowd {
             ended: self.ended() - ended,
             errors: written.errors.into_iter().collect(),
             reconnects: self.reconnects() - reconnects,
+            put_off: self.put_off() - put_off,
             memory,
             server_cores: server.map(|cpu| cpu / lasted.as_secs_f64()),
             people_cores: people.as_secs_f64() / lasted.as_secs_f64(),
@@ -144,6 +151,10 @@ impl Crowd {
 
     fn ended(&self) -> u64 {
         self.ledger.ended.load(Ordering::Relaxed)
+    }
+
+    fn put_off(&self) -> u64 {
+        self.ledger.put_off.load(Ordering::Relaxed)
     }
 
     fn reconnects(&self) -> u64 {

@@ -48,6 +48,9 @@ pub struct Met {
     pub errors: Vec<(String, u64)>,
     /// Connections that had to be made anew.
     pub reconnects: u64,
+    /// How often somebody was told that the next question is still being thought about;
+    /// their wait goes on.
+    pub put_off: u64,
     /// The most memory that the server had, in bytes, where it tells.
     pub memory: Option<u64>,
     /// The cores that the server used, where it tells.

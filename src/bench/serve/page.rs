@@ -110,7 +110,7 @@ pub fn markdown(report: &Report) -> String {
     );
     let _ = write!(
         page,
-        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. The server is a process of its own on the same machine as the people, and its database a new file.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
+        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. *Put off* is how often somebody was told that the question is still being thought about; their wait goes on. The server is a process of its own on the same machine as the people, and its database a new file.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
         names.join(", "),
         habits.think.as_secs_f64()
     );
@@ -125,6 +125,7 @@ pub fn markdown(report: &Report) -> String {
         "longest",
         "first question p95",
         "sessions ended",
+        "put off",
         "failed",
         "server memory",
         "server cores",
@@ -163,6 +164,7 @@ fn row(met: &Met) -> Vec<String> {
         ms(met.longest()),
         ms(first),
         met.ended.to_string(),
+        met.put_off.to_string(),
         met.failed().to_string(),
         met.memory.map_or("–".to_owned(), mib),
         met.server_cores.map_or("–".to_owned(), cores),
@@ -239,6 +241,7 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
         "ended",
         "failed",
         "reconnects",
+        "put_off",
         "memory",
         "server_cores",
         "people_cores",
@@ -258,6 +261,7 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
             met.ended.to_string(),
             met.failed().to_string(),
             met.reconnects.to_string(),
+            met.put_off.to_string(),
             met.memory.map_or(String::new(), |bytes| bytes.to_string()),
             met.server_cores
                 .map_or(String::new(), |cores| format!("{cores:.3}")),

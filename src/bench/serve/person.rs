@@ -20,6 +20,9 @@ use crate::oracle::{
 /// How often somebody asks again who was told to wait.
 const AGAIN: Duration = Duration::from_millis(200);
 
+/// How long somebody lets themselves be put off.
+const LONGEST: Duration = Duration::from_secs(60);
+
 /// How long somebody waits who was refused, at least.
 const BREATH: Duration = Duration::from_millis(500);
 
@@ -101,7 +104,7 @@ impl Person {
             }
             let asked = Instant::now();
             let path = format!("{}/answers", lesson.path);
-            let reply = self.client.json(Method::POST, &path, Some(&answer)).await?;
+            let reply = self.patiently(Method::POST, &path, Some(&answer)).await?;
             question = self.settled(&lesson.path, reply).await?;
             self.ledger.waited(asked.elapsed());
         }
@@ -117,9 +120,29 @@ impl Person {
             if !std::mem::take(&mut first) {
                 tokio::time::sleep(AGAIN).await;
             }
-            question = self.client.json(Method::GET, &path, None).await?;
+            question = self.patiently(Method::GET, &path, None).await?;
         }
         Ok(question)
+    }
+
+    /// What comes back, in the end, where the server says that it is still thinking. The
+    /// same answer sent again counts once.
+    async fn patiently(
+        &mut self,
+        method: Method,
+        path: &str,
+        body: Option<&Value>,
+    ) -> Result<Value, ClientError> {
+        let since = Instant::now();
+        loop {
+            match self.client.json(method.clone(), path, body).await {
+                Err(ClientError::Status(503)) if since.elapsed() < LONGEST => {
+                    self.ledger.put_off();
+                    tokio::time::sleep(AGAIN).await;
+                }
+                other => return other,
+            }
+        }
     }
 
     /// Takes an exponentially distributed time, as far as that is human.
