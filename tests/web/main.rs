@@ -9,6 +9,7 @@ mod clicks;
 mod conflicts;
 mod desk;
 mod health;
+mod openapi;
 mod pages;
 mod parts;
 mod people;
