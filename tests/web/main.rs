@@ -19,7 +19,9 @@ mod site;
 #[cfg(unix)]
 mod stop;
 mod store;
+mod stuck;
 mod studio;
+mod unreliable;
 mod upload_faults;
 mod upload_limits;
 mod uploads;
