@@ -21,6 +21,7 @@ mod stop;
 mod store;
 mod stuck;
 mod studio;
+mod together;
 mod unreliable;
 mod upload_faults;
 mod upload_limits;
