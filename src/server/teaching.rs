@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tokio::sync::Semaphore;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::ahead::{Foresight, Trial};
 use super::busy::Busy;
@@ -247,14 +247,22 @@ impl Teaching {
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
-                let (_permit, _turn) = (permit, turn);
+                let (mut permit, _turn) = (Some(permit), turn);
                 let begun = Instant::now();
                 let (archive, foresight) = (&here.archive, &here.foresight);
                 let mut session = match held.take() {
                     Some(session) => session,
                     None => load(archive, &id)?,
                 };
-                match advance(archive, &id, &mut session, decide, foresight, &stop) {
+                match advance(
+                    archive,
+                    &id,
+                    &mut session,
+                    decide,
+                    foresight,
+                    &stop,
+                    &mut permit,
+                ) {
                     Ok(position) => {
                         here.live.tell(id, session.entries());
                         let shown = view(&session, &position);
@@ -350,7 +358,7 @@ fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
 }
 
 /// Decides, appends and thinks; where that led. What was decided is kept even where
-/// thinking was stopped.
+/// thinking was stopped; the permit to think is given back once that is done.
 fn advance(
     archive: &Archive,
     id: &SessionId,
@@ -358,13 +366,17 @@ fn advance(
     decide: impl Fn(&Session) -> Result<Decision, WebError>,
     foresight: &Foresight,
     stop: &Stop,
+    permit: &mut Option<OwnedSemaphorePermit>,
 ) -> Result<Position, WebError> {
     loop {
         let clock = Clock::start();
         let already = match decide(session)? {
             Decision::Append(event) => {
                 let appended = match foresight.take(*id, session, &event) {
-                    Some(trial) => adopt(archive, id, session, trial)?,
+                    Some(trial) => {
+                        drop(permit.take());
+                        adopt(archive, id, session, trial)?
+                    }
                     None => append(archive, id, session, &event)?,
                 };
                 if !appended {
@@ -374,13 +386,17 @@ fn advance(
             }
             Decision::Already(position) => Some(position),
         };
+        let mut thought = already.is_none();
         while let Some(event) = session.think_until(stop) {
+            // What is left is to wait for the disk: others may think meanwhile.
+            drop(permit.take());
             append(archive, id, session, &event)?;
+            thought = true;
         }
         if stop.is_set() && *session.position() == Position::Thinking {
             return Err(WebError::Slow);
         }
-        if already.is_none() {
+        if thought {
             archive.metrics.chosen(&clock);
         }
         return Ok(match already {

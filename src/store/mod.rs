@@ -8,6 +8,7 @@ mod files;
 mod id;
 mod schema;
 mod sqlite;
+mod together;
 
 use std::io::Read;
 

@@ -8,12 +8,16 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod health;
+mod openapi;
 mod pages;
 mod parts;
 mod people;
 #[cfg(unix)]
 mod serve;
 mod site;
+#[cfg(unix)]
+mod stop;
 mod store;
 mod stuck;
 mod studio;
