@@ -32,7 +32,7 @@ pub(super) struct Place {
 
 impl Place {
     /// Of a byte of the text.
-    fn of(text: &str, byte: usize) -> Self {
+    pub(super) fn of(text: &str, byte: usize) -> Self {
         let before = text.get(..byte).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         Self {
