@@ -34,7 +34,7 @@ const EXAMPLE: &str = r#"{"id":"run-1","word":["a","b"],"complete":true}"#;
 /// Why there is no pool: where in the file, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PoolError {
-    /// The line, from 1; none where the file as a whole is wrong.
+    /// The line, from 1; none where the file cannot be read at all.
     pub line: Option<usize>,
     /// The column in the line, in bytes from 1.
     pub column: Option<usize>,
@@ -175,7 +175,11 @@ impl PoolReader {
         self.line(&line)?;
         if self.recordings.is_empty() {
             let message = format!("there is no recording: give at least one line like {EXAMPLE}");
-            return Err(PoolError::whole(message));
+            return Err(PoolError {
+                line: Some(1),
+                column: Some(1),
+                ..PoolError::whole(message)
+            });
         }
         Ok(Pool::new(self.alphabet, self.recordings))
     }
