@@ -4,7 +4,7 @@
 use automata::format::{ReadError, abbadingo as abb, dot as wiki, dot_people, hoa, json, jsonl};
 use automata::{Alphabet, Dfa};
 
-use crate::{check_place, text};
+use super::{check_place, text};
 
 fn check_fault(text: &str, error: &ReadError) {
     let shown = error.to_string();
@@ -61,7 +61,10 @@ pub(crate) fn sample(data: &[u8]) {
     match jsonl::read(text) {
         Ok(sample) => {
             assert_eq!(jsonl::read(&jsonl::write(&sample)).as_ref(), Ok(&sample));
-            assert_eq!(jsonl::read_over(text, sample.alphabet()).as_ref(), Ok(&sample));
+            assert_eq!(
+                jsonl::read_over(text, sample.alphabet()).as_ref(),
+                Ok(&sample)
+            );
             let _ = abb::write(&sample);
         }
         Err(error) => check_fault(text, &error),

@@ -44,7 +44,9 @@ pub fn run(name: &str, data: &[u8]) {
 fn text(data: &[u8]) -> &str {
     match std::str::from_utf8(data) {
         Ok(text) => text,
-        Err(error) => std::str::from_utf8(&data[..error.valid_up_to()]).expect("it is valid so far"),
+        Err(error) => {
+            std::str::from_utf8(&data[..error.valid_up_to()]).expect("it is valid so far")
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use memrep::learner::{Question, Reply};
 use memrep::session::{Decision, Event, Position, Refusal, Session};
 use serde_json::{Value, json};
 
-use crate::text;
+use super::text;
 
 /// The work for one question: enough for small sessions, and little for a fuzzer.
 const BUDGET: u64 = 300;
@@ -121,7 +121,10 @@ fn fold(mut events: Vec<Event>) {
             assert!(!error.message.is_empty());
             // All before it folds.
             let before = &events[..error.entry as usize];
-            assert!(before.is_empty() || Session::replay(before).is_ok(), "{error}");
+            assert!(
+                before.is_empty() || Session::replay(before).is_ok(),
+                "{error}"
+            );
             return;
         }
     };
@@ -141,7 +144,11 @@ fn fold(mut events: Vec<Event>) {
 fn go_on(session: &mut Session, events: &mut Vec<Event>) {
     if let Some(event) = session.think() {
         append(session, events, event);
-        assert_ne!(*session.position(), Position::Thinking, "it thought in vain");
+        assert_ne!(
+            *session.position(),
+            Position::Thinking,
+            "it thought in vain"
+        );
     }
 }
 
@@ -187,9 +194,7 @@ fn some_answer(session: &Session) -> Option<Event> {
         Position::Asking(number) => {
             let reply = match &session.asked(*number)?.question {
                 Question::Membership { .. } => Reply::Accept,
-                Question::Comparison { .. } => {
-                    Reply::Compared(memrep::evidence::Comparison::First)
-                }
+                Question::Comparison { .. } => Reply::Compared(memrep::evidence::Comparison::First),
                 Question::Equivalence { .. } => Reply::Correct,
             };
             session.answer(*number, &reply)
@@ -219,7 +224,8 @@ fn sound() -> &'static [Vec<Value>] {
     ];
     static LOGS: OnceLock<Vec<Vec<Value>>> = OnceLock::new();
     LOGS.get_or_init(|| {
-        let entry = |line: &str| -> Value { serde_json::from_str(line).expect("every line is an entry") };
+        let entry =
+            |line: &str| -> Value { serde_json::from_str(line).expect("every line is an entry") };
         let log = |text: &str| -> Vec<Value> { text.lines().map(&entry).collect() };
         let logs: Vec<Vec<Value>> = TEXTS.into_iter().map(log).collect();
         for log in &logs {

@@ -10,7 +10,7 @@ use memrep::world::grid::{GridMap, Labelling};
 use memrep::world::pool::PoolReader;
 use serde_json::{Value, json};
 
-use crate::{check_place, text};
+use super::{check_place, text};
 
 /// A task that was read can be written and read again, and a session begin with it.
 fn check_task(task: &Task) {
@@ -24,7 +24,9 @@ fn check_task(task: &Task) {
         return;
     };
     for example in &task.examples {
-        let atom = universe.parse(&example.atom).expect("examples are behaviours");
+        let atom = universe
+            .parse(&example.atom)
+            .expect("examples are behaviours");
         assert_eq!(universe.text(&atom), example.atom);
     }
     let setup = Setup {
@@ -63,8 +65,8 @@ fn check_file(file: &TaskFile) {
         return;
     }
     let written = task.to_toml();
-    let content = Task::toml_content(&written)
-        .unwrap_or_else(|fault| panic!("{}: {written}", fault.message));
+    let content =
+        Task::toml_content(&written).unwrap_or_else(|fault| panic!("{}: {written}", fault.message));
     let again = Task::from_json(&content);
     assert_eq!(again.as_ref(), Ok(task), "{written}");
     check_task(task);
@@ -222,7 +224,7 @@ fn kinds() -> [Task; 4] {
     ]}});
     let table = json!({"class": {"kind": "finite", "table": "is,x,y\np,1,0\nq,0,1\n"}});
     let drives = json!({"class": {"kind": "linear", "features": ["f"], "behaviours": [
-        {"name": "p", "features": [[0.5]]}, {"name": "q", "features": [[-0.5], [0.25]]},
+        {"name": "p", "features": [[0.5]]}, {"name": "q", "features": [[0.25], [0.75]]},
     ]}});
     [letters, axes, table, drives].map(|content| {
         Task::from_json(&content).unwrap_or_else(|error| panic!("{content}: {error}"))

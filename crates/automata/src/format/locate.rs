@@ -29,7 +29,12 @@ pub fn locate(text: &str, path: &str) -> usize {
 pub(super) fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text.as_bytes()[..byte.min(text.len())];
     let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-    let column = before.iter().rev().take_while(|byte| **byte != b'\n').count() + 1;
+    let column = before
+        .iter()
+        .rev()
+        .take_while(|byte| **byte != b'\n')
+        .count()
+        + 1;
     (line, column)
 }
 
@@ -137,7 +142,8 @@ mod tests {
 
     #[test]
     fn every_path_leads_to_its_value() {
-        let text = " {\"a\": [1, [2, \"]\\\"\"], {\"b.c\": 3}],\n \"\\u0062\" : {\"c\":[]}, \"d\": 4}";
+        let text =
+            " {\"a\": [1, [2, \"]\\\"\"], {\"b.c\": 3}],\n \"\\u0062\" : {\"c\":[]}, \"d\": 4}";
         for (path, rest) in [
             ("", "{\"a\""),
             ("a", "[1"),
@@ -162,7 +168,16 @@ mod tests {
 
     #[test]
     fn what_is_no_json_has_some_place() {
-        for text in ["", "{", "{\"a", "{\"a\\", "[1,", "{\"ä\\\":", "[\"", "{\"a\":[,,"] {
+        for text in [
+            "",
+            "{",
+            "{\"a",
+            "{\"a\\",
+            "[1,",
+            "{\"ä\\\":",
+            "[\"",
+            "{\"a\":[,,",
+        ] {
             for path in ["a", "[3]", "a[0].b", "a[99999999999999999999]"] {
                 assert!(locate(text, path) <= text.len(), "{text} {path}");
             }
