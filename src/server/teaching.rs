@@ -23,6 +23,10 @@ use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, Store
 /// shows what came of it.
 const SOON: Duration = Duration::from_millis(800);
 
+/// So long after the last who waited has gone, a session thinks on: a page that waits
+/// asks every other second.
+const GRACE: Duration = Duration::from_secs(10);
+
 /// How long a script waits: it would only ask again.
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -229,7 +233,7 @@ impl Teaching {
     ) -> Result<T, WebError> {
         let here = self.clone();
         let desk = self.desks.of(id);
-        let _waiting = desk.wait();
+        let _waiting = desk.wait(GRACE);
         let work = async move {
             let wait = here.archive.metrics.wait();
             let mut held = desk.session().lock_owned().await;
