@@ -51,7 +51,9 @@ impl Session {
             }
             Event::Enlarged { max_states } => {
                 if !(1..=MAX_STATES).contains(max_states) {
-                    return Err(format!("a bound of {max_states} states is beyond all bounds"));
+                    return Err(format!(
+                        "a bound of {max_states} states is beyond all bounds"
+                    ));
                 }
                 self.task.max_states = *max_states;
                 self.rebuild()?;

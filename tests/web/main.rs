@@ -8,9 +8,11 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod invariants;
 mod pages;
 mod parts;
 mod people;
+mod random;
 #[cfg(unix)]
 mod serve;
 mod site;
