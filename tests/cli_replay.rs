@@ -295,6 +295,6 @@ fn recordings_are_named_beside_the_log() {
     );
     let bad = kept("bad.jsonl", "{\"id\":\"x\",\"word\":[\"c\"]}\n");
     let told = fault(&replay(&log, &["--recordings", &bad]), 2);
-    assert!(told.contains("line 1, column 18, `word[0]`"), "{told}");
+    assert!(told.contains("line 1, column 19, `word[0]`"), "{told}");
     assert!(Path::new(&path).exists());
 }

@@ -4,6 +4,7 @@
 //! `MEMREP_CALLS=10000` sends so many; `MEMREP_CALLS_SEED=7` sends what another run
 //! sent, which printed that number.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use axum::body::Body;
@@ -46,6 +47,8 @@ struct Caller {
     trail: Vec<String>,
     slow: usize,
     seed: u64,
+    /// How often each status came.
+    statuses: BTreeMap<u16, usize>,
 }
 
 impl Drop for Caller {
@@ -84,6 +87,7 @@ impl Caller {
             trail: Vec::new(),
             slow: 0,
             seed,
+            statuses: BTreeMap::new(),
         };
         let task = tasks().choose(&mut caller.random).unwrap().clone();
         let made = caller
@@ -147,6 +151,7 @@ impl Caller {
 
     /// No call is answered by a 5xx; 503 says that the learner takes long.
     fn look_at(&mut self, reply: &Reply) {
+        *self.statuses.entry(reply.status.as_u16()).or_default() += 1;
         if reply.status == StatusCode::SERVICE_UNAVAILABLE {
             self.slow += 1;
         } else {
