@@ -1,6 +1,9 @@
 //! What a teacher's answers say about the concept being taught, whatever its
 //! class. Knows neither automata nor learners.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use serde::{Deserialize, Serialize};
 
 /// The number of an answered question; facts carry it so that an answer can be
@@ -100,30 +103,62 @@ impl<A> Fact<A> {
     }
 }
 
+/// Ends a computation whose result nobody wants any more. Clones are the same stop.
+///
+/// What comes of a computation that was stopped means nothing, and nor does the
+/// state in which it leaves whatever did the work.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Ends the work, soon.
+    pub fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the work is to end.
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
 /// How much work a computation may still do.
 ///
 /// Work is counted in steps of the solvers, never in seconds, so that the same
 /// input stops at the same place on every machine. One unit is one node of the
 /// enumerator; the SAT engines convert their own steps to about the same time.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Budget {
     left: u64,
+    stop: Stop,
 }
 
 impl Budget {
     /// A budget of `units` of work.
     pub fn new(units: u64) -> Self {
-        Self { left: units }
+        Self::until(units, &Stop::default())
+    }
+
+    /// A budget of `units` of work, all of which are gone once `stop` is set.
+    pub fn until(units: u64, stop: &Stop) -> Self {
+        Self {
+            left: units,
+            stop: stop.clone(),
+        }
     }
 
     /// A budget that never ends.
     pub fn unlimited() -> Self {
-        Self { left: u64::MAX }
+        Self::new(u64::MAX)
     }
 
     /// Takes `units`; `false`, and nothing left, if there were not that many.
     #[must_use]
     pub fn spend(&mut self, units: u64) -> bool {
+        if self.stop.is_set() {
+            self.left = 0;
+            return false;
+        }
         if self.left == u64::MAX {
             return true;
         }
@@ -139,6 +174,11 @@ impl Budget {
 
     /// Whether nothing is left.
     pub fn is_spent(&self) -> bool {
-        self.left == 0
+        self.left == 0 || self.stop.is_set()
+    }
+
+    /// What ends the work before the units are gone.
+    pub fn stop(&self) -> &Stop {
+        &self.stop
     }
 }

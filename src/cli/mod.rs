@@ -4,20 +4,26 @@
 //! for done, 1 where the answer is "no", 2 for bad input or usage.
 
 mod bench;
+#[cfg(feature = "server")]
+mod config;
 mod convert;
 mod equivalent;
 mod files;
 mod identify;
 mod learn;
+#[cfg(feature = "server")]
+mod log;
 mod output;
 mod replay;
 #[cfg(feature = "server")]
 mod serve;
+#[cfg(feature = "server")]
+mod settings;
 mod task;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 /// Learns a formal task specification from comparisons and membership answers.
 #[derive(Debug, Parser)]
@@ -40,6 +46,9 @@ enum Command {
     /// Serve the pages and the API (also what `memrep` alone does).
     #[cfg(feature = "server")]
     Serve(serve::Args),
+    /// Tell the settings that `serve` would run with, and where each comes from.
+    #[cfg(feature = "server")]
+    Config(config::Args),
     /// Learn a target from a scripted teacher.
     Learn(learn::Args),
     /// Find the smallest automaton consistent with a sample.
@@ -58,7 +67,14 @@ enum Command {
 
 /// Parses the command line, runs the command, and reports what went wrong.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let given = Cli::command().get_matches();
+    let cli = match Cli::from_arg_matches(&given) {
+        Ok(cli) => cli,
+        Err(error) => error.format(&mut Cli::command()).exit(),
+    };
+    // Which flags were given, and not only what holds, is for the settings to know.
+    #[cfg(feature = "server")]
+    let flags = given.subcommand().map_or(&given, |(_, flags)| flags);
     let result = match cli.command {
         Some(Command::Learn(args)) => learn::run(&args),
         Some(Command::Identify(args)) => identify::run(&args),
@@ -68,12 +84,11 @@ pub fn main() -> ExitCode {
         Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
-        Some(Command::Serve(args)) => serve::run(args),
+        Some(Command::Config(args)) => config::run(&args, flags),
         #[cfg(feature = "server")]
-        None => serve::run(cli.serve),
+        Some(Command::Serve(_)) | None => serve::run(flags),
         #[cfg(not(feature = "server"))]
         None => {
-            use clap::CommandFactory;
             let _ = Cli::command().print_help();
             return ExitCode::from(2);
         }

@@ -2,91 +2,171 @@
 
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context as _, bail};
+use clap::ArgMatches;
 use tokio::net::TcpListener;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
 
+use super::{log, settings};
 use crate::server::{self, AppState};
-use crate::store::Sqlite;
+use crate::store::{Sqlite, Store};
 
 /// How long work that nobody waits for any more may go on at the end.
 const LAST_WORK: Duration = Duration::from_secs(1);
 
-/// Arguments of `memrep serve`.
+/// Arguments of `memrep serve`, and with that all settings of the server.
+///
+/// A new setting is a field here, and nothing else: an option `--idle-time` becomes
+/// the variable `MEMREP_IDLE_TIME` and the key `idle_time` of `memrep.toml`, and is
+/// told by `memrep config`. `Option<T>` is one that need not hold, `Vec<T>` one that
+/// may be said several times (an array in the file), `bool` a switch, `u16` to `u64`
+/// a number in the file, and anything else a string there. One whose name ends in
+/// `password` is never shown, nor is a password in an address (`scheme://user:…@`).
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:
+#[command(
+    after_help = "Every option but --config is also a key of memrep.toml and a variable of the
+environment: --lease is `lease` and MEMREP_LEASE. A flag counts before the
+environment, and that before the file; `memrep config` tells what holds and why.
+
+Examples:
   memrep serve
   memrep serve --addr 127.0.0.1:9000 --database lab.db
-  RUST_LOG=debug memrep serve")]
+  MEMREP_LOG=debug memrep serve
+  memrep serve --config /etc/memrep.toml"
+)]
 pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
-    addr: SocketAddr,
+    pub(super) addr: SocketAddr,
     /// The database file in which sessions are kept; created if there is none.
     #[arg(long, value_name = "PATH", default_value = "memrep.db")]
-    database: PathBuf,
+    pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.
     #[arg(long, value_name = "SECONDS", default_value = "120",
           value_parser = clap::value_parser!(u32).range(1..=86400))]
-    lease: u32,
+    pub(super) lease: u32,
+    /// What is logged: error, warn, info, debug, trace or off, also by the part of
+    /// the program, as in `info,memrep::server=debug`. `RUST_LOG` is heard too.
+    #[arg(long, value_name = "LEVEL", default_value = "info")]
+    pub(super) log: Targets,
+    /// Lines of the log for people, or one JSON object a line.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = log::Format::Text)]
+    pub(super) log_format: log::Format,
+    /// An address of its own for /metrics and /healthz; without it they are on the
+    /// main one, and /metrics answers nobody but this machine.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub(super) metrics_addr: Option<SocketAddr>,
+    /// A file of settings; without it memrep.toml in the working folder, if it is there.
+    #[arg(long, value_name = "FILE")]
+    pub(super) config: Option<PathBuf>,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: Args) -> anyhow::Result<ExitCode> {
+/// Runs the command, given how it was called.
+pub(super) fn run(flags: &ArgMatches) -> anyhow::Result<ExitCode> {
+    let (args, _) = settings::resolve::<Args>(flags)?;
     refuse_public(args.addr.ip())?;
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .init();
-    // The port first: a second server on the same port must not touch the file.
+    allow_many_connections();
+    let _written = log::start(args.log_format, args.log.clone());
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
         .context("the async runtime cannot start")?;
-    let served = runtime.block_on(serve(args));
+    let opened = runtime.block_on(open(&args))?;
+    let store = Arc::clone(&opened.store);
+    let served = runtime.block_on(serve(args, opened));
     runtime.shutdown_timeout(LAST_WORK);
+    // Nobody is asked any more: what the store put off can be done now.
+    if let Err(cause) = store.rest() {
+        tracing::warn!(%cause, "the store could not be left in order; it will be at the next start");
+    }
+    tracing::info!("stopped");
     served.map(|()| ExitCode::SUCCESS)
 }
 
-async fn serve(args: Args) -> anyhow::Result<()> {
-    let listener = match TcpListener::bind(args.addr).await {
-        Ok(listener) => listener,
+/// What the server has in its hands when it starts.
+struct Opened {
+    listener: TcpListener,
+    figures: Option<TcpListener>,
+    store: Arc<dyn Store>,
+}
+
+/// The ports first: a second server on the same port must not touch the file.
+async fn open(args: &Args) -> anyhow::Result<Opened> {
+    let listener = bind(args.addr, "--addr").await?;
+    let figures = match args.metrics_addr {
+        Some(address) => Some(bind(address, "--metrics-addr").await?),
+        None => None,
+    };
+    let store = Sqlite::open(Path::new(&args.database))?;
+    Ok(Opened {
+        listener,
+        figures,
+        store: Arc::new(store),
+    })
+}
+
+async fn bind(address: SocketAddr, flag: &str) -> anyhow::Result<TcpListener> {
+    match TcpListener::bind(address).await {
+        Ok(listener) => Ok(listener),
         Err(error) if error.kind() == ErrorKind::AddrInUse => bail!(
-            "port {} is in use, perhaps by another memrep: stop that program, or choose another port with --addr {}:0",
-            args.addr.port(),
-            args.addr.ip()
+            "port {} is in use, perhaps by another memrep: stop that program, or choose another port with {flag} {}:0",
+            address.port(),
+            address.ip()
         ),
         Err(error) if error.kind() == ErrorKind::PermissionDenied => bail!(
-            "port {} needs special rights: choose one above 1023 with --addr",
-            args.addr.port()
+            "port {} needs special rights: choose one above 1023 with {flag}",
+            address.port()
         ),
-        Err(error) => {
-            return Err(error).context(format!(
-                "cannot serve on {}: choose another address with --addr",
-                args.addr
-            ));
-        }
-    };
-    let store = Sqlite::open(&args.database)?;
-    let lease = Duration::from_secs(args.lease.into());
-    let at = listener.local_addr().context("the address is unknown")?;
-    let stop = stop_signal()?;
-    println!("memrep is at http://{at}/");
-    println!(
-        "Sessions are kept in {}. Stop with Ctrl+C.",
-        args.database.display()
-    );
-    server::run(listener, AppState::with_lease(Arc::new(store), lease), stop)
-        .await
-        .context("the server stopped")
+        Err(error) => Err(error).context(format!(
+            "cannot serve on {address}: choose another address with {flag}"
+        )),
+    }
 }
+
+async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
+    let at = opened.listener.local_addr();
+    let at = at.context("the address is unknown")?;
+    let stop = stop_signal()?;
+    let lease = Duration::from_secs(args.lease.into());
+    let mut state = AppState::with_lease(opened.store, lease);
+    println!("memrep is at http://{at}/");
+    let database = settings::masked(&args.database);
+    println!("Sessions are kept in {database}. Stop with Ctrl+C.");
+    tracing::info!(version = env!("CARGO_PKG_VERSION"), addr = %at, database, "started");
+    if let Some(listener) = opened.figures {
+        let at = listener.local_addr().context("the address is unknown")?;
+        println!("Figures are at http://{at}/metrics");
+        state = state.with_figures_apart();
+        tokio::spawn(server::run_figures(listener, state.clone()));
+    }
+    let stop = async {
+        stop.await;
+        tracing::info!("stopping: requests in progress are answered first");
+    };
+    let served = server::run(opened.listener, state, stop).await;
+    served.context("the server stopped")
+}
+
+/// Lets the process have as many connections as the system allows it: a common bound
+/// is 1024, and every open page of a session is one.
+#[cfg(unix)]
+pub(super) fn allow_many_connections() {
+    use rustix::process::{Resource, getrlimit, setrlimit};
+    let mut limit = getrlimit(Resource::Nofile);
+    limit.current = limit.maximum;
+    // Where this is refused, the bound stays as it was.
+    let _ = setrlimit(Resource::Nofile, limit);
+}
+
+/// There is no such bound.
+#[cfg(not(unix))]
+pub(super) fn allow_many_connections() {}
 
 /// There is no sign-in yet: whoever reaches the port can read and answer.
 fn refuse_public(address: IpAddr) -> anyhow::Result<()> {

@@ -178,7 +178,12 @@ impl Identifier {
         let mut particles = known.unwrap_or_else(|| {
             Particles::new(self.problem.alphabet(), bound, wish.decay, wish.seed)
         });
-        particles.hear(wish.heard);
+        if !particles.hear(wish.heard, budget.stop()) {
+            self.particles = Some(particles);
+            return Err(Failure::OverBudget {
+                at_least: self.at_least,
+            });
+        }
         let listed = spread::list(&self.problem, &self.standing, bound, wish);
         let met = spread::met(self.problem.alphabet(), particles.met());
         let astray = wish.heard.iter().flatten().all(|heard| heard.sure) && particles.are_astray();
@@ -284,7 +289,7 @@ impl Engines {
             EngineChoice::Batsat => trusted(self.batsat(), query, budget),
             EngineChoice::Auto => {
                 let given = enumerator_share(query, budget);
-                let mut nodes = Budget::new(given);
+                let mut nodes = Budget::until(given, budget.stop());
                 let verdict = trusted(&mut self.enumerator, query, &mut nodes);
                 let enough = budget.spend(given - nodes.left());
                 if !matches!(verdict, Verdict::OverBudget) || !enough || budget.is_spent() {

@@ -10,7 +10,7 @@ use super::outlook::Weighed;
 use super::selection::{CONCEPTS, Candidates, Compare, Judge, select};
 use super::{Learner, Question, Step, Strategy};
 use crate::concept::{ConceptClass, Failure};
-use crate::evidence::Budget;
+use crate::evidence::{Budget, Stop};
 
 /// How many consistent concepts stand for all of them. The share that an answer
 /// leaves (Eq. 5.3) is then known to at most `√(1/(4·32))`, nine in a hundred,
@@ -34,7 +34,7 @@ pub(super) type Arm<C> = (Asked<C>, Losses);
 
 impl<C: ConceptClass> Learner<C> {
     /// The next move, by Algorithm 4.
-    pub(super) fn choose(&mut self) -> Move<C> {
+    pub(super) fn choose(&mut self, stop: &Stop) -> Move<C> {
         if let Some(conflict) = self.evidence.order.conflict() {
             return (Step::Conflict(conflict), None);
         }
@@ -49,15 +49,15 @@ impl<C: ConceptClass> Learner<C> {
             return (step, Some(hypothesis));
         }
         if self.config.strategy.has_posterior() {
-            return self.weigh();
+            return self.weigh(stop);
         }
-        self.learn_by_elimination()
+        self.learn_by_elimination(stop)
     }
 
     /// The next move by Algorithm 4: concepts are eliminated until one is left.
-    pub(super) fn learn_by_elimination(&mut self) -> Move<C> {
+    pub(super) fn learn_by_elimination(&mut self, stop: &Stop) -> Move<C> {
         let mut random = self.generator();
-        let mut budget = Budget::new(self.config.budget);
+        let mut budget = Budget::until(self.config.budget, stop);
         let sample = match self.class.sample(SAMPLE, random.random(), &mut budget) {
             Ok(sample) => sample,
             Err(Failure::Contradiction(conflict)) => return (Step::Conflict(conflict), None),

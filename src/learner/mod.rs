@@ -28,7 +28,7 @@ pub use self::experts::{Losses, PosteriorAdvice, Round};
 use self::known::Known;
 pub use self::outlook::{Answer, Expected, Left, Outlook, Removed};
 use crate::concept::ConceptClass;
-use crate::evidence::{AnswerId, Fact};
+use crate::evidence::{AnswerId, Fact, Stop};
 
 /// The learner: evidence in, question out.
 #[derive(Clone)]
@@ -134,13 +134,28 @@ impl<C: ConceptClass> Learner<C> {
         reason = "it is no iterator: the same move comes until it is answered"
     )]
     pub fn next(&mut self) -> Step<C::Atom, C::Concept> {
+        self.seek(&Stop::default())
+    }
+
+    /// The same; none, and soon, once `stop` is set.
+    pub fn next_until(&mut self, stop: &Stop) -> Option<Step<C::Atom, C::Concept>> {
+        let step = self.seek(stop);
+        if stop.is_set() {
+            // It may be a guess, and so may all that came with it.
+            self.fold();
+            return None;
+        }
+        Some(step)
+    }
+
+    fn seek(&mut self, stop: &Stop) -> Step<C::Atom, C::Concept> {
         if let Some(step) = &self.next {
             return step.clone();
         }
         self.doubts = None;
         self.outlook = None;
         self.checking = false;
-        let (step, simplest) = self.choose();
+        let (step, simplest) = self.choose(stop);
         self.next = Some(step.clone());
         self.simplest = simplest;
         step

@@ -2,12 +2,13 @@
 //! question. Must not write: only an answer that was given is appended.
 
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use tokio::sync::{Semaphore, watch};
 
+use super::busy::Busy;
+use crate::evidence::Stop;
 use crate::session::{Event, Position, Session};
 use crate::store::SessionId;
 
@@ -26,16 +27,16 @@ pub(crate) struct Trial {
 }
 
 impl Trial {
-    /// Where this entry leads; none if it makes no sense here.
-    fn of(session: &Session, cause: Event) -> Option<Self> {
+    /// Where this entry leads; none if it makes no sense here, or nobody wants it.
+    fn of(session: &Session, cause: Event, stop: &Stop) -> Option<Self> {
         let mut session = session.fork();
         session.apply(&cause).ok()?;
         let mut effects = Vec::new();
-        while let Some(effect) = session.think() {
+        while let Some(effect) = session.think_until(stop) {
             session.apply(&effect).ok()?;
             effects.push(effect);
         }
-        Some(Self {
+        (!stop.is_set()).then_some(Self {
             cause,
             effects,
             session,
@@ -51,18 +52,23 @@ struct Ahead {
     /// Whether all trials were made.
     ended: watch::Sender<bool>,
     /// Whether nobody wants them any more.
-    stale: AtomicBool,
+    stale: Stop,
 }
 
 /// So long the page that was asked for has the machine for itself. Nobody answers
 /// sooner, and on a small machine trials would delay what they are to hasten.
 const BREATH: Duration = Duration::from_millis(150);
 
+/// Of the cores so much may be at work for people before nothing is tried out any
+/// more: trials take several times as long as the answer that is given.
+const SPARE: f64 = 0.25;
+
 /// The trials of the sessions looked at last.
 pub(crate) struct Foresight {
     sessions: Mutex<VecDeque<(SessionId, Arc<Ahead>)>>,
     /// Trials leave a core to those who wait, if there is more than one.
     spare: Arc<Semaphore>,
+    width: usize,
 }
 
 impl Foresight {
@@ -71,20 +77,33 @@ impl Foresight {
         Self {
             sessions: Mutex::default(),
             spare: Arc::new(Semaphore::new((width / 2).max(1))),
+            width,
         }
     }
 
     /// Begins to work out what may follow, unless that was begun already. Trials
-    /// take their turns at `permits` with everybody's work.
-    pub(crate) fn prepare(&self, id: SessionId, session: &Session, permits: &Arc<Semaphore>) {
+    /// take their turns at `permits` with everybody's work, and are not made where the
+    /// machine is busy with what people wait for.
+    pub(crate) fn prepare(
+        &self,
+        id: SessionId,
+        session: &Session,
+        permits: &Arc<Semaphore>,
+        busy: &Arc<Busy>,
+    ) {
+        // What mends a contradiction is told on the page itself, which waits for it.
+        let is_told = matches!(session.position(), Position::Conflict(_));
+        let most = SPARE * self.width as f64;
+        if !is_told && busy.cores() > most {
+            return;
+        }
         let foreseen = session.foreseen();
         let Some(ahead) = self.open(id, session.entries(), foreseen.is_empty()) else {
             return;
         };
-        // What mends a contradiction is told on the page itself, which waits for it.
-        let is_told = matches!(session.position(), Position::Conflict(_));
         let mut session = session.fork();
         let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
+        let busy = Arc::clone(busy);
         tokio::spawn(async move {
             if !is_told {
                 tokio::time::sleep(BREATH).await;
@@ -94,13 +113,14 @@ impl Foresight {
                     spare.acquire().await,
                     Arc::clone(&permits).acquire_owned().await,
                 );
-                let ((Ok(_spare), Ok(permit)), false) = (turn, ahead.stale.load(Ordering::Relaxed))
-                else {
+                let is_over = ahead.stale.is_set() || !is_told && busy.cores() > most;
+                let ((Ok(_spare), Ok(permit)), false) = (turn, is_over) else {
                     break;
                 };
+                let stale = ahead.stale.clone();
                 let trial = tokio::task::spawn_blocking(move || {
                     let _permit = permit;
-                    (Trial::of(&session, event), session)
+                    (Trial::of(&session, event, &stale), session)
                 });
                 match trial.await {
                     Ok((trial, back)) => {
@@ -137,7 +157,7 @@ impl Foresight {
             entries,
             trials: Mutex::default(),
             ended: watch::Sender::new(false),
-            stale: AtomicBool::new(false),
+            stale: Stop::default(),
         });
         sessions.push_back((id, Arc::clone(&ahead)));
         Some(ahead)
@@ -181,6 +201,13 @@ impl Foresight {
         ahead.trials().iter().map(view).collect()
     }
 
+    /// Ends all trials: the server stops.
+    pub(crate) fn end(&self) {
+        for (_, ahead) in self.sessions().drain(..) {
+            ahead.give_up();
+        }
+    }
+
     fn sessions(&self) -> MutexGuard<'_, VecDeque<(SessionId, Arc<Ahead>)>> {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -188,7 +215,7 @@ impl Foresight {
 
 impl Ahead {
     fn give_up(&self) {
-        self.stale.store(true, Ordering::Relaxed);
+        self.stale.set();
     }
 
     fn trials(&self) -> MutexGuard<'_, Vec<Trial>> {

@@ -31,6 +31,7 @@ pub(crate) type Body = Result<Bytes, BytesRejection>;
 /// All routes but that of uploads, relative to `/api/v1`.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
+        .route("/openapi.json", get(description))
         .route("/sessions", get(list))
         .route("/sessions/{id}", get(state))
         .route("/sessions/{id}/question", get(question))
@@ -44,6 +45,11 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/concept", get(concept))
         .route("/sessions/{id}/log", get(log))
         .route("/sessions/{id}/live", get(super::live::live))
+}
+
+/// What the routes are, for programs that write clients.
+async fn description() -> Response {
+    super::typed("application/json", include_str!("openapi.json").to_owned())
 }
 
 /// The JSON of a request.

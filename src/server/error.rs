@@ -2,10 +2,12 @@
 //! a page by the pages.
 
 use axum::Json;
-use axum::http::StatusCode;
+use axum::http::header::RETRY_AFTER;
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
+use super::observe;
 use super::upload::{RECORDINGS, UPLOAD_LIMIT};
 use super::views;
 use crate::session::{Corrupt, Malformed, Refusal};
@@ -187,7 +189,7 @@ impl WebError {
                 "This session learns no automaton: take its rule from `/concept`.".to_owned()
             }
             Self::Slow => {
-                "The next question is still being worked out. Your answer is kept: ask again in a moment."
+                "The next question is still being worked out: many rules fit what was said, and they are compared. Your answers are kept: ask again in a moment."
                     .to_owned()
             }
             Self::Corrupt(corrupt) => sentence(&format!(
@@ -198,6 +200,12 @@ impl WebError {
                     .to_owned()
             }
         }
+    }
+
+    /// The name under which the log has the cause; none where the message says all.
+    pub(crate) fn told_by(&self) -> Option<String> {
+        let is_ours = self.status() == StatusCode::INTERNAL_SERVER_ERROR;
+        is_ours.then(observe::request_id).flatten()
     }
 
     fn log(&self) {
@@ -260,7 +268,15 @@ impl IntoResponse for ApiError {
         if let Some(field) = self.0.field() {
             error["field"] = field.into();
         }
-        (self.0.status(), Json(json!({ "error": error }))).into_response()
+        if let Some(id) = self.0.told_by() {
+            error["request"] = id.into();
+        }
+        let mut response = (self.0.status(), Json(json!({ "error": error }))).into_response();
+        if matches!(self.0, WebError::Slow) {
+            let soon = HeaderValue::from_static("1");
+            response.headers_mut().insert(RETRY_AFTER, soon);
+        }
+        response
     }
 }
 

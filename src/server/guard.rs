@@ -59,7 +59,8 @@ pub(crate) async fn host(request: Request, next: Next) -> Response {
     }
 }
 
-fn is_own(host: &str) -> bool {
+/// Whether this names the machine itself, or no machine by name.
+pub(crate) fn is_own(host: &str) -> bool {
     let name = match host.rsplit_once(':') {
         Some((name, port)) if port.bytes().all(|b| b.is_ascii_digit()) => name,
         _ => host,

@@ -47,6 +47,12 @@ impl Live {
         }
     }
 
+    /// How many wait for news.
+    pub(crate) fn followers(&self) -> usize {
+        let sessions = self.sessions();
+        sessions.values().map(watch::Sender::receiver_count).sum()
+    }
+
     /// Ends everybody's news: the server stops.
     pub(crate) fn end(&self) {
         self.sessions().clear();

@@ -9,8 +9,10 @@ mod ahead;
 mod api;
 mod assets;
 mod behaviour;
+mod busy;
 mod chart;
 mod check;
+mod desks;
 mod done;
 mod drive;
 mod error;
@@ -18,10 +20,13 @@ mod export;
 mod follow;
 mod forms;
 mod guard;
+mod health;
 mod invited;
 mod leases;
 mod live;
 mod media;
+mod metrics;
+mod observe;
 mod outlook;
 mod pages;
 mod past;
@@ -41,25 +46,26 @@ mod upload;
 mod views;
 mod walk;
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
+use axum::extract::DefaultBodyLimit;
 use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
-use axum::middleware::from_fn;
+use axum::middleware::{from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::csrf::{CsrfLayer, ProtectionError};
-use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
 use tower_http::timeout::RequestBodyDeadlineLayer;
-use tower_http::trace::TraceLayer;
 
 use crate::store::Store;
 use error::{ApiError, PageError, WebError};
+use metrics::Metrics;
 use teaching::Teaching;
 
 /// The largest body of a form: 64 KiB.
@@ -76,7 +82,12 @@ const FAREWELL: Duration = Duration::from_secs(3);
 /// What all requests share.
 #[derive(Clone)]
 pub struct AppState {
-    teaching: Arc<Teaching>,
+    teaching: Teaching,
+    metrics: Arc<Metrics>,
+    /// Whose turn it is to ask whether the store is well.
+    probes: Arc<Semaphore>,
+    /// Whether the figures are on an address of their own.
+    figures_apart: bool,
 }
 
 impl AppState {
@@ -90,8 +101,30 @@ impl AppState {
     /// is offered to another.
     pub fn with_lease(store: Arc<dyn Store>, lease: Duration) -> Self {
         let width = std::thread::available_parallelism().map_or(2, usize::from);
+        let metrics = Arc::new(Metrics::default());
         Self {
-            teaching: Arc::new(Teaching::new(store, width, lease)),
+            teaching: Teaching::new(store, width, lease, Arc::clone(&metrics)),
+            metrics,
+            probes: Arc::new(Semaphore::new(1)),
+            figures_apart: false,
+        }
+    }
+
+    /// The same for scripts, which rather wait than ask again.
+    fn patient(&self) -> Self {
+        Self {
+            teaching: self.teaching.patient(),
+            ..self.clone()
+        }
+    }
+
+    /// The same, with its figures on no address but [the one](run_figures) that is
+    /// theirs.
+    #[must_use]
+    pub fn with_figures_apart(self) -> Self {
+        Self {
+            figures_apart: true,
+            ..self
         }
     }
 }
@@ -132,29 +165,13 @@ pub fn app(state: AppState) -> Router {
         ApiError(WebError::Foreign).into_response()
     });
     Router::new()
-        .nest("/api/v1", api)
-        .merge(pages)
-        .with_state(state)
+        .nest("/api/v1", api.with_state(state.patient()))
+        .merge(pages.with_state(state.clone()))
         .layer(same_site)
         .layer(from_fn(guard::host))
+        .merge(health::routes(state.clone()))
         .layer(from_fn(guard::headers))
-        .layer(TraceLayer::new_for_http().make_span_with(span))
-        .layer(PropagateRequestIdLayer::x_request_id())
-        .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
-}
-
-/// What is logged of a request: the route, never the session's name in it.
-fn span(request: &Request) -> tracing::Span {
-    let route = request
-        .extensions()
-        .get::<MatchedPath>()
-        .map_or("unknown", MatchedPath::as_str);
-    let id = request
-        .headers()
-        .get("x-request-id")
-        .and_then(|id| id.to_str().ok())
-        .unwrap_or_default();
-    tracing::info_span!("request", method = %request.method(), route, id)
+        .layer(from_fn_with_state(state, observe::observe))
 }
 
 fn panicked(panic: &(dyn std::any::Any + Send)) -> WebError {
@@ -178,10 +195,11 @@ pub async fn run(
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
-    let teaching = Arc::clone(&state.teaching);
-    let server = axum::serve(listener, app(state)).with_graceful_shutdown(async move {
+    let teaching = state.teaching.clone();
+    let app = app(state).into_make_service_with_connect_info::<SocketAddr>();
+    let server = axum::serve(listener, app).with_graceful_shutdown(async move {
         shutdown.await;
-        teaching.live().end();
+        teaching.end();
         let _ = stopping.send(());
     });
     let farewell = async {
@@ -199,6 +217,16 @@ pub async fn run(
             Ok(())
         }
     }
+}
+
+/// Serves `/metrics` and `/healthz` on an address of their own, which whoever chose it
+/// keeps from others.
+///
+/// # Errors
+///
+/// If accepting connections fails.
+pub async fn run_figures(listener: TcpListener, state: AppState) -> std::io::Result<()> {
+    axum::serve(listener, health::apart(state)).await
 }
 
 /// A response whose body is text of this type.

@@ -70,6 +70,8 @@ async fn show(
     let id = session_id(&id)?;
     let mut query = query.into_iter();
     let trace = query.find_map(|(key, value)| (key == "trace").then_some(value));
+    // First what may have to be waited for, and then what is there.
+    let spent = spent(&app, id).await?;
     let typed = Typed {
         follows: Follow::all(&app.teaching, id).await,
         ..Typed::default()
@@ -77,7 +79,7 @@ async fn show(
     let view = View {
         typed,
         trace,
-        spent: spent(&app, id).await?,
+        spent,
         ..View::default()
     };
     let view = move |session: &Session| page(id, session, view);

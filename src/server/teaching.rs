@@ -1,66 +1,99 @@
 //! The one way in and out of a session: decide, append durably, fold, think,
 //! append, show; on a bounded pool, one thing at a time for each session.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use tokio::sync::{Mutex as AsyncMutex, Semaphore};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::ahead::{Foresight, Trial};
+use super::busy::Busy;
+use super::desks::Desks;
 use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
+use super::metrics::{Clock, Metrics};
 use super::upload::{Pools, Upload};
+use crate::evidence::Stop;
 use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
 use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, StoredFile};
 
-/// How many folded sessions are kept in memory; the others wait in the store.
-const KEPT: usize = 200;
+/// How long a page waits for the learner before it says so; a form and the page that
+/// follows it take twice as long. The learner goes on after that, and a later page
+/// shows what came of it.
+const SOON: Duration = Duration::from_millis(800);
 
-/// How long a page waits for the learner. The learner goes on after that, and
-/// a later page shows what came of it.
+/// So long after the last who waited has gone, a session thinks on: a page that waits
+/// asks every other second.
+const GRACE: Duration = Duration::from_secs(10);
+
+/// How long a script waits: it would only ask again.
 const PATIENCE: Duration = Duration::from_secs(30);
-
-/// A session in memory; `None` until it is read from the store, or once its
-/// work has failed, so that the store's word counts again.
-type Slot = AsyncMutex<Option<Session>>;
 
 /// Where sessions are read from: the store, and what is in memory of its uploads.
 struct Archive {
     store: Arc<dyn Store>,
     pools: Pools,
+    metrics: Arc<Metrics>,
 }
 
 /// All sessions of a store, and the pool on which they think.
+#[derive(Clone)]
 pub(crate) struct Teaching {
     archive: Arc<Archive>,
-    loaded: Mutex<Loaded>,
+    desks: Arc<Desks>,
     permits: Arc<Semaphore>,
+    busy: Arc<Busy>,
     foresight: Arc<Foresight>,
     live: Arc<Live>,
     leases: Arc<Leases>,
-}
-
-#[derive(Default)]
-struct Loaded {
-    slots: HashMap<SessionId, (u64, Arc<Slot>)>,
-    clock: u64,
+    /// Set once the server stops.
+    over: Stop,
+    patience: Duration,
 }
 
 impl Teaching {
     /// Sessions of `store`, of which at most `width` think at the same time; each of
     /// several people has a question for as long as `lease`.
-    pub(crate) fn new(store: Arc<dyn Store>, width: usize, lease: Duration) -> Self {
+    pub(crate) fn new(
+        store: Arc<dyn Store>,
+        width: usize,
+        lease: Duration,
+        metrics: Arc<Metrics>,
+    ) -> Self {
         let pools = Pools::default();
         Self {
-            archive: Arc::new(Archive { store, pools }),
-            loaded: Mutex::default(),
+            archive: Arc::new(Archive {
+                store,
+                pools,
+                metrics,
+            }),
+            desks: Arc::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
+            busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
             live: Arc::default(),
             leases: Arc::new(Leases::new(lease)),
+            over: Stop::default(),
+            patience: SOON,
         }
+    }
+
+    /// The same, for those who rather wait than ask again.
+    pub(crate) fn patient(&self) -> Self {
+        Self {
+            patience: PATIENCE,
+            ..self.clone()
+        }
+    }
+
+    /// Ends all news and all work: the server stops. What was not thought to its end
+    /// is thought when somebody asks for it.
+    pub(crate) fn end(&self) {
+        self.over.set();
+        self.live.end();
+        self.desks.end();
+        self.foresight.end();
     }
 
     /// Begins a session and puts its first question. Where the task's world is an
@@ -69,7 +102,7 @@ impl Teaching {
         let id = SessionId::random().map_err(WebError::internal)?;
         let archive = Arc::clone(&self.archive);
         self.on_pool(move || {
-            let Archive { store, pools } = &*archive;
+            let Archive { store, pools, .. } = &*archive;
             let world = pools.world(&**store, &task)?;
             let upload = match (world, task.upload()) {
                 (Some(world), Some(named)) => {
@@ -169,6 +202,11 @@ impl Teaching {
         .await
     }
 
+    /// How many sessions are in memory.
+    pub(crate) fn in_memory(&self) -> usize {
+        self.desks.len()
+    }
+
     /// The store, for what is read piece by piece.
     pub(crate) fn store(&self) -> Arc<dyn Store> {
         Arc::clone(&self.archive.store)
@@ -193,31 +231,48 @@ impl Teaching {
         decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
         view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
     ) -> Result<T, WebError> {
-        let archive = Arc::clone(&self.archive);
-        let slot = self.slot(id);
-        let permits = Arc::clone(&self.permits);
-        let (foresight, live) = (Arc::clone(&self.foresight), Arc::clone(&self.live));
+        let here = self.clone();
+        let desk = self.desks.of(id);
+        let _waiting = desk.wait(GRACE);
         let work = async move {
-            let mut held = slot.lock_owned().await;
-            let permit = Arc::clone(&permits).acquire_owned().await;
+            let wait = here.archive.metrics.wait();
+            let mut held = desk.session().lock_owned().await;
+            let permit = Arc::clone(&here.permits).acquire_owned().await;
             let permit = permit.map_err(WebError::internal)?;
+            let turn = wait.over();
+            let stop = desk.begin();
+            if here.over.is_set() {
+                stop.set();
+            }
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
-                let _permit = permit;
+                let (mut permit, _turn) = (Some(permit), turn);
+                let begun = Instant::now();
+                let (archive, foresight) = (&here.archive, &here.foresight);
                 let mut session = match held.take() {
                     Some(session) => session,
-                    None => load(&archive, &id)?,
+                    None => load(archive, &id)?,
                 };
-                match advance(&archive, &id, &mut session, decide, &foresight) {
+                match advance(
+                    archive,
+                    &id,
+                    &mut session,
+                    decide,
+                    foresight,
+                    &stop,
+                    &mut permit,
+                ) {
                     Ok(position) => {
-                        live.tell(id, session.entries());
-                        foresight.prepare(id, &session, &permits);
+                        here.live.tell(id, session.entries());
                         let shown = view(&session, &position);
+                        here.busy.note(begun.elapsed());
+                        foresight.prepare(id, &session, &here.permits, &here.busy);
                         *held = Some(session);
                         Ok(shown)
                     }
                     Err(error) => {
+                        here.busy.note(begun.elapsed());
                         if error.is_refusal() {
                             *held = Some(session);
                         }
@@ -228,7 +283,7 @@ impl Teaching {
             .await
             .map_err(WebError::internal)?
         };
-        match tokio::time::timeout(PATIENCE, work).await {
+        match tokio::time::timeout(self.patience, work).await {
             Ok(result) => result,
             Err(_) => Err(WebError::Slow),
         }
@@ -273,31 +328,6 @@ impl Teaching {
             .await
             .map_err(WebError::internal)?
     }
-
-    fn slot(&self, id: SessionId) -> Arc<Slot> {
-        let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
-        loaded.clock += 1;
-        let now = loaded.clock;
-        let slot = {
-            let entry = loaded.slots.entry(id).or_default();
-            entry.0 = now;
-            Arc::clone(&entry.1)
-        };
-        if loaded.slots.len() > KEPT {
-            // Only slots that nobody holds: two slots of one session would be
-            // two writers.
-            let oldest = loaded
-                .slots
-                .iter()
-                .filter(|(_, (_, slot))| Arc::strong_count(slot) == 1)
-                .min_by_key(|(_, (used, _))| *used)
-                .map(|(id, _)| *id);
-            if let Some(oldest) = oldest {
-                loaded.slots.remove(&oldest);
-            }
-        }
-        slot
-    }
 }
 
 fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
@@ -327,19 +357,26 @@ fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
     Session::replay_in(world, &events).map_err(WebError::Corrupt)
 }
 
-/// Decides, appends and thinks; where that led.
+/// Decides, appends and thinks; where that led. What was decided is kept even where
+/// thinking was stopped; the permit to think is given back once that is done.
 fn advance(
     archive: &Archive,
     id: &SessionId,
     session: &mut Session,
     decide: impl Fn(&Session) -> Result<Decision, WebError>,
     foresight: &Foresight,
+    stop: &Stop,
+    permit: &mut Option<OwnedSemaphorePermit>,
 ) -> Result<Position, WebError> {
     loop {
+        let clock = Clock::start();
         let already = match decide(session)? {
             Decision::Append(event) => {
                 let appended = match foresight.take(*id, session, &event) {
-                    Some(trial) => adopt(archive, id, session, trial)?,
+                    Some(trial) => {
+                        drop(permit.take());
+                        adopt(archive, id, session, trial)?
+                    }
                     None => append(archive, id, session, &event)?,
                 };
                 if !appended {
@@ -349,8 +386,18 @@ fn advance(
             }
             Decision::Already(position) => Some(position),
         };
-        while let Some(event) = session.think() {
+        let mut thought = already.is_none();
+        while let Some(event) = session.think_until(stop) {
+            // What is left is to wait for the disk: others may think meanwhile.
+            drop(permit.take());
             append(archive, id, session, &event)?;
+            thought = true;
+        }
+        if stop.is_set() && *session.position() == Position::Thinking {
+            return Err(WebError::Slow);
+        }
+        if thought {
+            archive.metrics.chosen(&clock);
         }
         return Ok(match already {
             Some(position) if position != Position::Thinking => position,
@@ -401,8 +448,12 @@ fn append(
 /// Appends an entry to the store; `false` if another writer was faster.
 fn keep(archive: &Archive, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
     let body = serde_json::to_string(event).map_err(WebError::internal)?;
+    let begun = Instant::now();
     match archive.store.append(id, seq, &body) {
-        Ok(()) => Ok(true),
+        Ok(()) => {
+            archive.metrics.appended(event, begun.elapsed());
+            Ok(true)
+        }
         Err(StoreError::Taken { .. }) => Ok(false),
         Err(error) => Err(WebError::internal(error)),
     }

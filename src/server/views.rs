@@ -2,7 +2,6 @@
 
 use askama::Template;
 use axum::http::StatusCode;
-use axum::http::header::{HeaderValue, RETRY_AFTER};
 use axum::response::{Html, IntoResponse, Response};
 
 use super::assets;
@@ -127,32 +126,39 @@ struct ErrorPage {
     shell: Shell,
     heading: &'static str,
     message: String,
+    /// The request's name, by which its line in the log is found.
+    request: Option<String>,
     wait: bool,
 }
 
 /// A page that says what went wrong.
 pub(crate) fn error_page(error: &WebError) -> Response {
-    let status = error.status();
-    let wait = status == StatusCode::SERVICE_UNAVAILABLE;
+    // A person who waits for the learner has met no error.
+    let wait = matches!(error, WebError::Slow);
+    let status = if wait {
+        StatusCode::ACCEPTED
+    } else {
+        error.status()
+    };
     let heading = match status {
         StatusCode::NOT_FOUND => "Nothing here",
-        StatusCode::SERVICE_UNAVAILABLE => "Still thinking",
+        StatusCode::ACCEPTED => "Still thinking",
         StatusCode::INTERNAL_SERVER_ERROR => "That went wrong",
         _ => "That did not work",
     };
     let page = ErrorPage {
         shell: Shell::plain(heading),
         heading,
-        message: error.message(),
+        message: if wait {
+            "Your answers are kept. Many rules fit what was said so far, and memrep compares them to find the question that tells most; this one takes longer than others. The page goes on by itself."
+                .to_owned()
+        } else {
+            error.message()
+        },
+        request: error.told_by(),
         wait,
     };
-    let mut response = (status, render(&page)).into_response();
-    if wait {
-        response
-            .headers_mut()
-            .insert(RETRY_AFTER, HeaderValue::from_static("3"));
-    }
-    response
+    (status, render(&page)).into_response()
 }
 
 /// A template as a response.

@@ -7,7 +7,7 @@ use crate::task::{Fields, Malformed, Task, read_cost, read_strategy};
 
 /// The work that choosing one question may do, where nothing else is said: a
 /// few seconds at most.
-pub const DEFAULT_BUDGET: u64 = 2_000_000;
+pub const DEFAULT_BUDGET: u64 = 500_000;
 
 /// The learner's configuration in a form that survives JSON, in which there is
 /// no infinite number.

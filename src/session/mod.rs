@@ -36,6 +36,7 @@ pub use ready::{NAMES as READY_NAMES, offered, ready};
 pub use samples::{Claim, RISK, SHEET, Samples};
 
 use self::pupil::Pupil;
+use crate::evidence::Stop;
 use crate::identify::Contradiction;
 use crate::learner::{Counts, Left, Question, Removed, Reply, Round, Step};
 pub use crate::task::{
@@ -205,10 +206,16 @@ impl Session {
     ///
     /// This is the only work here that takes time, at most the budget.
     pub fn think(&mut self) -> Option<Event> {
+        self.think_until(&Stop::default())
+    }
+
+    /// The same, or nothing, and soon, once `stop` is set: the session is then
+    /// thinking still.
+    pub fn think_until(&mut self, stop: &Stop) -> Option<Event> {
         if self.position != Position::Thinking {
             return None;
         }
-        Some(match self.learner.next() {
+        Some(match self.learner.next_until(stop)? {
             Step::Ask {
                 question,
                 round,
@@ -262,7 +269,7 @@ impl Session {
         if !matches!(self.position, Position::Asking(_)) {
             return None;
         }
-        self.learner.next();
+        self.learner.next_until(&Stop::default());
         self.learner.outlook()?.rivals
     }
 

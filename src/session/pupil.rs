@@ -5,14 +5,15 @@ use rand_chacha::ChaCha8Rng;
 
 use super::Setup;
 use crate::concept::{ConceptClass, DfaClass};
-use crate::evidence::AnswerId;
+use crate::evidence::{AnswerId, Stop};
 use crate::identify::{EngineChoice, Settings};
 use crate::learner::{Counts, Learner, Outlook, Question, Reply, Round, Step};
 use crate::task::{Atom, Concept, Task, Universe};
 
 /// A learner that is told and asks in the words of every class.
 pub(super) trait Pupil: Send {
-    fn next(&mut self) -> Step<Atom, Concept>;
+    /// The next move; none, and soon, once it is to stop.
+    fn next_until(&mut self, stop: &Stop) -> Option<Step<Atom, Concept>>;
 
     /// Says why where the answer makes no sense.
     fn record(
@@ -106,8 +107,8 @@ where
     Atom: From<C::Atom>,
     Concept: From<C::Concept>,
 {
-    fn next(&mut self) -> Step<Atom, Concept> {
-        match Learner::next(self) {
+    fn next_until(&mut self, stop: &Stop) -> Option<Step<Atom, Concept>> {
+        Some(match Learner::next_until(self, stop)? {
             Step::Ask {
                 question,
                 round,
@@ -121,7 +122,7 @@ where
             Step::Done { hypothesis } => Step::Done {
                 hypothesis: hypothesis.into(),
             },
-        }
+        })
     }
 
     fn record(

@@ -8,6 +8,7 @@ mod files;
 mod id;
 mod schema;
 mod sqlite;
+mod together;
 
 use std::io::Read;
 
@@ -210,4 +211,32 @@ pub trait Store: Send + Sync {
     ///
     /// If the database fails.
     fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError>;
+
+    /// Whether the store answers at all; cheap.
+    ///
+    /// # Errors
+    ///
+    /// If it does not.
+    fn probe(&self) -> Result<(), StoreError> {
+        self.list(1).map(|_| ())
+    }
+
+    /// How many sessions there are.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn count(&self) -> Result<u64, StoreError> {
+        Ok(self.list(usize::MAX)?.len() as u64)
+    }
+
+    /// Leaves nothing to be done at the next start: the process is about to end.
+    /// Without it nothing is lost.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn rest(&self) -> Result<(), StoreError> {
+        Ok(())
+    }
 }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionBehavior, params};
 
 use super::schema::{bring_up_to_date, check_header};
+use super::together::Together;
 use super::{
     Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files,
 };
@@ -15,6 +16,7 @@ use super::{
 /// append returns. Not for network file systems.
 pub struct Sqlite {
     connection: Mutex<Connection>,
+    together: Together,
 }
 
 impl Sqlite {
@@ -83,38 +85,14 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     bring_up_to_date(&mut connection)?;
     Ok(Sqlite {
         connection: Mutex::new(connection),
+        together: Together::default(),
     })
 }
 
 impl Store for Sqlite {
     fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
-        let mut connection = self.connection();
-        let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-        let id = session.to_string();
-        let last: Option<i64> = transaction
-            .prepare_cached("SELECT max(seq) FROM entries WHERE session = ?1")?
-            .query_row([&id], |row| row.get(0))?;
-        let expected = last.map_or(0, |last| last.cast_unsigned() + 1);
-        if seq < expected {
-            return Err(StoreError::Taken {
-                session: *session,
-                seq,
-            });
-        }
-        if seq > expected {
-            return Err(StoreError::Gap {
-                session: *session,
-                seq,
-            });
-        }
-        if seq == 0 {
-            transaction.execute("INSERT INTO sessions (id) VALUES (?1)", [&id])?;
-        }
-        transaction
-            .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
-            .execute(params![id, seq.cast_signed(), body])?;
-        transaction.commit()?;
-        Ok(())
+        let connect = || self.connection();
+        self.together.append(*session, seq, body, connect)
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
@@ -222,6 +200,26 @@ impl Store for Sqlite {
 
     fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError> {
         files::chunk(&self.connection(), file, place)
+    }
+
+    fn probe(&self) -> Result<(), StoreError> {
+        self.connection()
+            .prepare_cached("SELECT id FROM sessions LIMIT 1")?
+            .exists([])?;
+        Ok(())
+    }
+
+    fn count(&self) -> Result<u64, StoreError> {
+        let connection = self.connection();
+        let mut statement = connection.prepare_cached("SELECT count(*) FROM sessions")?;
+        let count: i64 = statement.query_row([], |row| row.get(0))?;
+        Ok(count.cast_unsigned())
+    }
+
+    fn rest(&self) -> Result<(), StoreError> {
+        let connection = self.connection();
+        connection.pragma_update(None, "wal_checkpoint", "TRUNCATE")?;
+        Ok(())
     }
 }
 

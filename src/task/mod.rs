@@ -31,6 +31,8 @@ pub use class::ClassText;
 pub use costs::{Costs, read_cost, read_strategy};
 pub use examples::{Example, Practice, Practised, read_word};
 pub use file::{Fault, TaskFile, Unusable};
+#[cfg(feature = "server")]
+pub(crate) use places::Place;
 pub use prior::{PriorText, Rule};
 pub use reader::{Fields, Malformed};
 pub(crate) use situation::{LONGEST, STEPS};

@@ -30,8 +30,16 @@ async fn log(site: &Site, session: &str) -> Vec<Event> {
     events
 }
 
-/// Checks a session; the number of its entries.
-pub(crate) async fn check(site: &Site, id: &str) -> usize {
+/// A session that was checked.
+pub(crate) struct Checked {
+    /// The entries of its log.
+    pub(crate) entries: usize,
+    /// Whether its answers contradict each other.
+    pub(crate) is_conflict: bool,
+}
+
+/// Checks a session.
+pub(crate) async fn check(site: &Site, id: &str) -> Checked {
     let path = format!("/api/v1/sessions/{id}");
     let question = site.get(&format!("{path}/question")).await;
     assert_eq!(question.status, StatusCode::OK, "{}", question.text);
@@ -54,7 +62,10 @@ pub(crate) async fn check(site: &Site, id: &str) -> usize {
     if let Position::Conflict(conflict) = twin.position() {
         check_conflict(&twin, conflict);
     }
-    events.len()
+    Checked {
+        entries: events.len(),
+        is_conflict: matches!(twin.position(), Position::Conflict(_)),
+    }
 }
 
 /// What a standing answer says.

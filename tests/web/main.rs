@@ -8,7 +8,9 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod health;
 mod invariants;
+mod openapi;
 mod pages;
 mod parts;
 mod people;
@@ -16,8 +18,12 @@ mod random;
 #[cfg(unix)]
 mod serve;
 mod site;
+#[cfg(unix)]
+mod stop;
 mod store;
+mod stuck;
 mod studio;
+mod unreliable;
 mod upload_faults;
 mod upload_limits;
 mod uploads;

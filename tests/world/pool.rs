@@ -202,7 +202,10 @@ fn the_first_broken_line_is_named_with_its_field() {
         let line =
             format!(r#"{{"id":"x","word":[],"media":{{"kind":"animation","path":"{path}"}}}}"#);
         let error = read(&symbols, &line).unwrap_err();
-        assert!(error.starts_with("line 1, column 56, `media.path`: "), "{error}");
+        assert!(
+            error.starts_with("line 1, column 56, `media.path`: "),
+            "{error}"
+        );
         assert!(error.contains("is no path within the upload"), "{error}");
     }
     let error = read(

@@ -25,6 +25,7 @@ use self::visits::Visits;
 use super::completion::Table;
 use super::spread::Wish;
 use crate::belief::{Belief, Heard};
+use crate::evidence::Stop;
 
 /// The powers to which the likelihood is raised: hot chains roam, and bring the
 /// cold ones what they find.
@@ -117,7 +118,8 @@ impl Particles {
 
     /// Hears `heard`, answer by answer; what was heard before and is not in it is
     /// forgotten. Where that leads does not depend on what was heard before.
-    pub(crate) fn hear(&mut self, heard: &[Vec<Heard<Word>>]) {
+    /// `false` if it was stopped before all was heard.
+    pub(crate) fn hear(&mut self, heard: &[Vec<Heard<Word>>], stop: &Stop) -> bool {
         let mut common = (self.heard.iter().zip(heard))
             .take_while(|(one, other)| one == other)
             .count();
@@ -136,6 +138,9 @@ impl Particles {
             }
         }
         for answer in &heard[common..] {
+            if stop.is_set() {
+                return false;
+            }
             self.heard.push(answer.clone());
             for heard in answer {
                 self.script.add(heard);
@@ -146,6 +151,7 @@ impl Particles {
             self.past.push(Arc::new(stage));
             self.met = met;
         }
+        true
     }
 
     /// Where all chains come to from where they were, and what they meet.

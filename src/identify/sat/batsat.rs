@@ -5,7 +5,7 @@ use std::cell::Cell;
 use batsat::{Callbacks, ClauseKind, SolverInterface, lbool};
 
 use super::solver::{Answer, CLAUSES_PER_UNIT, Lit, Model, Solver};
-use crate::evidence::Budget;
+use crate::evidence::{Budget, Stop};
 
 /// The units of work that one decision takes (measured, as are the next ones,
 /// on formulas of 9 to 14 states: a unit is then one to two µs).
@@ -20,6 +20,7 @@ const UNITS_PER_LITERAL: u64 = 2;
 struct Meter {
     /// The solver asks from behind a shared reference whether to stop.
     left: Cell<u64>,
+    stop: Stop,
 }
 
 impl Meter {
@@ -37,7 +38,7 @@ impl Callbacks for Meter {
     /// as the solver asks twice.
     fn stop(&self) -> bool {
         self.take(UNITS_PER_DECISION);
-        self.left.get() == 0
+        self.left.get() == 0 || self.stop.is_set()
     }
 }
 
@@ -55,6 +56,7 @@ impl Batsat {
     pub(super) fn new() -> Self {
         let meter = Meter {
             left: Cell::new(u64::MAX),
+            stop: Stop::default(),
         };
         Self {
             solver: batsat::Solver::new(batsat::SolverOpts::default(), meter),
@@ -98,7 +100,9 @@ impl Solver for Batsat {
         }
         let assumptions: Vec<_> = assumptions.iter().map(|&lit| self.lit(lit)).collect();
         let allowed = budget.left();
-        self.solver.cb_mut().left.set(allowed);
+        let meter = self.solver.cb_mut();
+        meter.left.set(allowed);
+        meter.stop = budget.stop().clone();
         let result = self.solver.solve_limited(&assumptions);
         let used = allowed - self.solver.cb().left.get();
         // Cannot fail: no more is used than was allowed.

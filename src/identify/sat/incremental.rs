@@ -5,7 +5,7 @@ use automata::Dfa;
 
 use super::canonical::{Choice, choose};
 use super::encoding::Encoding;
-use super::solver::{Answer, Lit, Solver};
+use super::solver::{Answer, CLAUSES_PER_UNIT, Lit, Solver};
 use crate::evidence::Budget;
 use crate::identify::engine::{Engine, Query, Verdict};
 use crate::identify::problem::{Constraint, FactId, Problem};
@@ -59,6 +59,11 @@ impl<S: Solver> SatEngine<S> {
 
 impl<S: Solver> Engine for SatEngine<S> {
     fn search(&mut self, query: &Query<'_>, budget: &mut Budget) -> Verdict {
+        // Whoever cannot pay for the formula need not wait for it to be written.
+        if clauses(query) / CLAUSES_PER_UNIT >= budget.left() {
+            let _ = budget.spend(budget.left());
+            return Verdict::OverBudget;
+        }
         let encoding = self.encoding(query.problem, query.states);
         let assumptions: Vec<Lit> = query
             .standing
@@ -91,6 +96,31 @@ impl<S: Solver> Engine for SatEngine<S> {
             }
         }
     }
+}
+
+/// About as many clauses say what is asked, whatever was asked before.
+fn clauses(query: &Query<'_>) -> u64 {
+    let tree = query.problem.tree();
+    let mut met = vec![false; tree.size()];
+    let mut nodes = 0;
+    for fact in query.standing {
+        let [one, other] = match query.problem.facts()[fact.index()].constraint {
+            Constraint::Label(node, _) => [node; 2],
+            Constraint::AtMost(one, other) | Constraint::Same(one, other) => [one, other],
+        };
+        for word in [one, other] {
+            let mut node = Some(word);
+            while let Some(at) = node.filter(|at| !met[at.index()]) {
+                met[at.index()] = true;
+                nodes += 1;
+                node = tree.parent(at).map(|(parent, _)| parent);
+            }
+        }
+    }
+    let states = query.states as u64;
+    let edges = states * query.problem.alphabet().len() as u64;
+    // Where each word's prefix ends by where it came from, and that it is one place.
+    nodes * (2 * states * states + states * states / 2) + edges * states * states / 2
 }
 
 /// The assumptions of a core that a second solve confirms; all assumptions,

@@ -7,7 +7,7 @@
 //! stopped so is of no further use; the clauses are kept here, and the next
 //! solve loads them into a new one.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
@@ -17,7 +17,7 @@ use std::thread;
 use varisat::ExtendFormula;
 
 use super::solver::{Answer, CLAUSES_PER_UNIT, Lit, Model, Solver};
-use crate::evidence::Budget;
+use crate::evidence::{Budget, Stop};
 
 /// The bytes of proof that are one unit of work (measured on formulas of 9 to
 /// 14 states: a unit is then one to two µs).
@@ -109,6 +109,7 @@ impl Solver for Varisat {
             clauses: self.clauses.tail(self.sent),
             assumptions: assumptions.to_vec(),
             allowed,
+            stop: budget.stop().clone(),
         };
         self.sent = self.clauses.ends.len();
         let Some(Done { answer, left }) = worker.solve(task) else {
@@ -134,6 +135,7 @@ struct Task {
     assumptions: Vec<Lit>,
     /// The bytes of proof that may be written.
     allowed: u64,
+    stop: Stop,
 }
 
 /// What came of a task.
@@ -174,17 +176,15 @@ impl Worker {
 
 /// Solves one task after the other with one solver.
 fn work(inbox: &Receiver<Task>, outbox: &Sender<Done>) {
-    let left = Rc::new(Cell::new(u64::MAX));
+    let meter = Meter::default();
     let mut solver = varisat::Solver::new();
     // The other formats panic on assumptions.
-    solver.write_proof(
-        Meter(Rc::clone(&left)),
-        varisat::solver::ProofFormat::Varisat,
-    );
+    solver.write_proof(meter.clone(), varisat::solver::ProofFormat::Varisat);
     let mut variables = Vec::new();
     while let Ok(task) = inbox.recv() {
         // Loading clauses writes too, and has to be done however long they are.
-        left.set(u64::MAX);
+        meter.left.set(u64::MAX);
+        meter.stop.replace(Stop::default());
         while variables.len() < task.variables {
             variables.push(solver.new_var());
         }
@@ -195,12 +195,13 @@ fn work(inbox: &Receiver<Task>, outbox: &Sender<Done>) {
         }
         let assumptions: Vec<_> = task.assumptions.iter().map(translate).collect();
         solver.assume(&assumptions);
-        left.set(task.allowed);
+        meter.left.set(task.allowed);
+        meter.stop.replace(task.stop);
         let answer = answer(&mut solver, task.variables);
         let stopped = matches!(answer, Answer::Unknown);
         let done = Done {
             answer,
-            left: left.get(),
+            left: meter.left.get(),
         };
         if outbox.send(done).is_err() || stopped {
             break;
@@ -232,16 +233,30 @@ fn answer(solver: &mut varisat::Solver<'_>, variables: usize) -> Answer {
     }
 }
 
-/// Swallows a proof until it is longer than allowed.
-struct Meter(Rc<Cell<u64>>);
+/// Swallows a proof until it is longer than allowed, or nobody wants the answer.
+#[derive(Clone)]
+struct Meter {
+    left: Rc<Cell<u64>>,
+    stop: Rc<RefCell<Stop>>,
+}
+
+impl Default for Meter {
+    fn default() -> Self {
+        Self {
+            left: Rc::new(Cell::new(u64::MAX)),
+            stop: Rc::default(),
+        }
+    }
+}
 
 impl io::Write for Meter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if let Some(left) = self.0.get().checked_sub(bytes.len() as u64) {
-            self.0.set(left);
+        let left = self.left.get().checked_sub(bytes.len() as u64);
+        if let Some(left) = left.filter(|_| !self.stop.borrow().is_set()) {
+            self.left.set(left);
             Ok(bytes.len())
         } else {
-            self.0.set(0);
+            self.left.set(0);
             Err(io::Error::other("the budget is spent"))
         }
     }

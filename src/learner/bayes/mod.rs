@@ -21,7 +21,7 @@ use super::outlook::Weighed;
 use super::{Learner, Question, Step, Strategy};
 use crate::belief::Heard;
 use crate::concept::{ConceptClass, Failure, Wish};
-use crate::evidence::Budget;
+use crate::evidence::{Budget, Stop};
 
 /// The sizes that are listed, from the smallest consistent one.
 const SIZES: usize = 4;
@@ -32,9 +32,9 @@ const LISTED: usize = 1000;
 
 impl<C: ConceptClass> Learner<C> {
     /// The next move by the posterior.
-    pub(super) fn weigh(&mut self) -> Move<C> {
+    pub(super) fn weigh(&mut self, stop: &Stop) -> Move<C> {
         let mut random = self.generator();
-        let mut budget = Budget::new(self.config.budget);
+        let mut budget = Budget::until(self.config.budget, stop);
         let heard = self.heard();
         let wish = Wish {
             sizes: SIZES,
@@ -51,7 +51,7 @@ impl<C: ConceptClass> Learner<C> {
         if spread.hurried {
             // Nothing likely was found: these are consistent and no more. The
             // way of Algorithm 4 needs nothing else.
-            let (step, simplest) = self.learn_by_elimination();
+            let (step, simplest) = self.learn_by_elimination(stop);
             return match step {
                 Step::Ask {
                     question, round, ..

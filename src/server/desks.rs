@@ -1,0 +1,206 @@
+//! The sessions that are in memory, each at a desk of its own, at which one thing is
+//! done at a time; and who waits for what is done there. Must not know what is done.
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::Mutex as AsyncMutex;
+
+use crate::evidence::Stop;
+use crate::session::Session;
+use crate::store::SessionId;
+
+/// How many folded sessions are kept in memory; the others wait in the store.
+const KEPT: usize = 600;
+
+/// A session's place in memory.
+#[derive(Default)]
+pub(crate) struct Desk {
+    /// `None` until it is read from the store, or once its work has failed, so that
+    /// the store's word counts again.
+    session: Arc<AsyncMutex<Option<Session>>>,
+    waiting: AtomicUsize,
+    stop: Mutex<Stop>,
+}
+
+impl Desk {
+    /// The session, for whoever is to work on it alone.
+    pub(crate) fn session(&self) -> Arc<AsyncMutex<Option<Session>>> {
+        Arc::clone(&self.session)
+    }
+
+    /// Whoever begins to work asks with this whether to end.
+    pub(crate) fn begin(&self) -> Stop {
+        let fresh = Stop::default();
+        self.stop().clone_from(&fresh);
+        fresh
+    }
+
+    /// Somebody waits for what is done here, until the guard goes. So long after the
+    /// last who waited has gone, work goes on.
+    pub(crate) fn wait(self: &Arc<Self>, grace: Duration) -> Waiting {
+        self.waiting.fetch_add(1, Ordering::AcqRel);
+        Waiting {
+            desk: Arc::clone(self),
+            grace,
+        }
+    }
+
+    fn is_abandoned(&self) -> bool {
+        self.waiting.load(Ordering::Acquire) == 0
+    }
+
+    fn is_at_work(&self) -> bool {
+        self.session.try_lock().is_err()
+    }
+
+    fn stop(&self) -> MutexGuard<'_, Stop> {
+        self.stop.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Somebody who waits.
+pub(crate) struct Waiting {
+    desk: Arc<Desk>,
+    grace: Duration,
+}
+
+impl Drop for Waiting {
+    /// Ends what nobody waits for, after a while.
+    fn drop(&mut self) {
+        self.desk.waiting.fetch_sub(1, Ordering::AcqRel);
+        if !self.desk.is_abandoned() || !self.desk.is_at_work() {
+            return;
+        }
+        let Ok(runtime) = tokio::runtime::Handle::try_current() else {
+            return;
+        };
+        let (desk, grace) = (Arc::clone(&self.desk), self.grace);
+        let stop = desk.stop().clone();
+        runtime.spawn(async move {
+            tokio::time::sleep(grace).await;
+            // Other work may have begun since: that has a stop of its own.
+            if desk.is_abandoned() {
+                stop.set();
+            }
+        });
+    }
+}
+
+/// The desks of the sessions used last.
+#[derive(Default)]
+pub(crate) struct Desks(Mutex<Kept>);
+
+#[derive(Default)]
+struct Kept {
+    desks: HashMap<SessionId, (u64, Arc<Desk>)>,
+    clock: u64,
+}
+
+impl Desks {
+    /// The desk of this session.
+    pub(crate) fn of(&self, id: SessionId) -> Arc<Desk> {
+        let mut kept = self.kept();
+        kept.clock += 1;
+        let now = kept.clock;
+        let desk = {
+            let entry = kept.desks.entry(id).or_default();
+            entry.0 = now;
+            Arc::clone(&entry.1)
+        };
+        if kept.desks.len() > KEPT {
+            // Only desks at which nobody is: two desks of one session would be two
+            // writers.
+            let idle = (kept.desks.iter()).filter(|(_, (_, desk))| {
+                Arc::strong_count(desk) == 1 && Arc::strong_count(&desk.session) == 1
+            });
+            let oldest = idle.min_by_key(|(_, (used, _))| *used).map(|(id, _)| *id);
+            if let Some(oldest) = oldest {
+                kept.desks.remove(&oldest);
+            }
+        }
+        desk
+    }
+
+    /// Ends all work: the server stops.
+    pub(crate) fn end(&self) {
+        for (_, desk) in self.kept().desks.values() {
+            desk.stop().set();
+        }
+    }
+
+    /// How many sessions are in memory.
+    pub(crate) fn len(&self) -> usize {
+        self.kept().desks.len()
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHORT: Duration = Duration::from_millis(30);
+    const LONG: Duration = Duration::from_secs(600);
+
+    async fn ends(stop: &Stop) -> bool {
+        for _ in 0..200 {
+            if stop.is_set() {
+                return true;
+            }
+            tokio::time::sleep(SHORT / 3).await;
+        }
+        false
+    }
+
+    #[tokio::test]
+    async fn work_ends_once_nobody_has_waited_for_a_while() {
+        let desk = Arc::new(Desk::default());
+        let at_work = desk.session().lock_owned().await;
+        let stop = desk.begin();
+        let (first, second) = (desk.wait(SHORT), desk.wait(SHORT));
+        drop(first);
+        tokio::time::sleep(2 * SHORT).await;
+        assert!(!stop.is_set(), "somebody waits still");
+        drop(second);
+        assert!(ends(&stop).await);
+        drop(at_work);
+    }
+
+    #[tokio::test]
+    async fn whoever_comes_back_in_time_finds_it_going_on() {
+        let desk = Arc::new(Desk::default());
+        let _at_work = desk.session().lock_owned().await;
+        let stop = desk.begin();
+        drop(desk.wait(SHORT));
+        let _back = desk.wait(LONG);
+        tokio::time::sleep(3 * SHORT).await;
+        assert!(!stop.is_set());
+    }
+
+    #[tokio::test]
+    async fn all_work_ends_with_the_server() {
+        let desks = Desks::default();
+        let desk = desks.of(SessionId::random().unwrap());
+        let stop = desk.begin();
+        desks.end();
+        assert!(stop.is_set());
+    }
+
+    #[tokio::test]
+    async fn a_desk_at_which_somebody_is_stays() {
+        let desks = Desks::default();
+        let id = SessionId::random().unwrap();
+        let busy = desks.of(id);
+        for _ in 0..2 * KEPT {
+            desks.of(SessionId::random().unwrap());
+        }
+        assert!(Arc::ptr_eq(&busy, &desks.of(id)));
+        assert!(desks.len() <= KEPT + 1);
+    }
+}
