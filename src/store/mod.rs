@@ -4,6 +4,7 @@
 //! to it: it must not know the learner, nor what an entry means; a file is bytes
 //! with a name and a type; and a person is a number that a key opens.
 
+mod backup;
 mod files;
 mod id;
 mod schema;
@@ -11,6 +12,8 @@ mod sqlite;
 
 use std::io::Read;
 
+pub use backup::{Checked, back_up, check_backup, restore};
+pub(crate) use backup::{free_name, now};
 pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
 pub use sqlite::Sqlite;
 
@@ -122,10 +125,51 @@ pub enum StoreError {
         /// Why.
         error: std::io::Error,
     },
+    /// There is no room for what was to be kept.
+    #[error("there is no room left for the database: {message}")]
+    Full {
+        /// What was met.
+        message: String,
+    },
+    /// The database is elsewhere, and does not answer.
+    #[error("the database cannot be reached: {message}")]
+    Away {
+        /// What was met.
+        message: String,
+    },
+    /// A log has a gap: something else than memrep wrote there.
+    #[error("entry {seq} of session {session:?} is missing")]
+    Missing {
+        /// The session.
+        session: SessionId,
+        /// The number.
+        seq: u64,
+    },
+    /// A backup could not be made or put back.
+    #[error("{path}: {message}")]
+    Backup {
+        /// The file that is meant.
+        path: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
     /// The database failed.
     #[error("the database failed: {0}")]
-    Database(#[from] rusqlite::Error),
+    Database(rusqlite::Error),
 }
+
+impl From<rusqlite::Error> for StoreError {
+    fn from(error: rusqlite::Error) -> Self {
+        if sqlite::is_full(&error) {
+            let message = error.to_string();
+            return Self::Full { message };
+        }
+        Self::Database(error)
+    }
+}
+
+/// Who wants to hear that a session has so many entries now.
+pub type Hear = Box<dyn Fn(SessionId, u64) + Send + Sync>;
 
 /// Logs of sessions: append-only, one writer for each number; and uploads, which
 /// never change.
@@ -148,7 +192,26 @@ pub trait Store: Send + Sync {
     /// # Errors
     ///
     /// If the database fails.
-    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError>;
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        self.read_from(session, 0)
+    }
+
+    /// The entries of a session's log from this number on, in order.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError>;
+
+    /// Whether other servers write to the same logs, so that what is in memory may be
+    /// behind them.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
+    /// Tells from now on which sessions have grown, whoever wrote to them, where the
+    /// store [is shared](Self::is_shared). News may come twice, and late.
+    fn follow(&self, _hear: Hear) {}
 
     /// The sessions with the latest entries, latest first.
     ///
