@@ -249,7 +249,7 @@ async fn answer(
         Err(error @ WebError::Refused(Refusal::Closed { .. })) => {
             let view = |session: &Session| describe(session, session.position());
             let question = app.teaching.look(id, view).await?;
-            Ok(ApiError(error).beside("question", question))
+            Ok(ApiError(error).beside("question", &question))
         }
         Err(error) => Err(error.into()),
     }

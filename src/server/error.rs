@@ -303,7 +303,7 @@ impl From<Malformed> for WebError {
 
 impl ApiError {
     /// The error with what was learned beside it, under this key.
-    pub(crate) fn beside(self, key: &str, value: Value) -> Response {
+    pub(crate) fn beside(self, key: &str, value: &Value) -> Response {
         self.respond(json!({ key: value }))
     }
 

@@ -7,6 +7,8 @@
 mod backup;
 mod files;
 mod id;
+#[cfg(feature = "postgres")]
+mod postgres;
 mod schema;
 mod sqlite;
 
@@ -15,6 +17,8 @@ use std::io::Read;
 pub use backup::{Checked, back_up, check_backup, restore};
 pub(crate) use backup::{free_name, now};
 pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
+#[cfg(feature = "postgres")]
+pub use postgres::Postgres;
 pub use sqlite::Sqlite;
 
 /// The bytes of a file lie in pieces of this size, the last one shorter.
@@ -156,6 +160,10 @@ pub enum StoreError {
     /// The database failed.
     #[error("the database failed: {0}")]
     Database(rusqlite::Error),
+    /// The `PostgreSQL` server did not do what it was asked.
+    #[cfg(feature = "postgres")]
+    #[error("the database failed: {}", postgres::told(.0))]
+    Postgres(tokio_postgres::Error),
 }
 
 impl From<rusqlite::Error> for StoreError {

@@ -77,6 +77,20 @@ impl Sqlite {
         Ok(prepare(Connection::open_in_memory()?)?)
     }
 
+    /// Lets the database grow to so many bytes and no further.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    pub fn limit(&self, bytes: u64) -> Result<(), StoreError> {
+        let connection = self.connection();
+        let page = |row: &rusqlite::Row<'_>| row.get(0);
+        let size: i64 = connection.query_row("PRAGMA page_size", [], page)?;
+        let pages = i64::try_from(bytes).unwrap_or(i64::MAX) / size.max(1);
+        connection.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
+        Ok(())
+    }
+
     /// A panic elsewhere cannot have left a transaction open: they roll back.
     fn connection(&self) -> MutexGuard<'_, Connection> {
         self.connection
