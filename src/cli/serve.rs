@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub(super) addr: SocketAddr,
     /// The database file in which sessions are kept, created if there is none; or the
-    /// address of a PostgreSQL database that several servers share.
+    /// address of a `PostgreSQL` database that several servers share.
     #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db")]
     pub(super) database: String,
     /// How long one of several people has a question before it is offered to

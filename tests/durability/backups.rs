@@ -198,19 +198,60 @@ fn what_is_left_of_another_database_is_set_aside() {
     );
 }
 
+/// A session of every version that was released is there with all that belongs to it,
+/// and goes on.
+#[test]
+fn a_database_of_every_released_version_opens_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let released = [
+        (1, "49e2833f13f9b31ccbe73e5bdd7afc88", 10),
+        (2, "c364a5ceb7de0076eb77565e5d87f8d9", 6),
+        (3, "1055d2b08709d82c2ae8bcfbe57ac12c", 9),
+    ];
+    for (version, session, entries) in released {
+        let database = folder.path().join(format!("{version}.db"));
+        std::fs::copy(fixture(version), &database).unwrap();
+        let server = Server::at(&database);
+        let path = format!("/api/v1/sessions/{session}");
+        let log = server.ask("GET", &format!("{path}/log"), &Value::Null);
+        assert_eq!(log.body.lines().count(), entries, "version {version}");
+        let question = server.ask("GET", &format!("{path}/question"), &Value::Null);
+        assert_eq!(question.status, 200, "version {version}: {question:?}");
+        drop(server);
+        check_backup(&database).unwrap();
+    }
+    let store = Sqlite::open(&folder.path().join("3.db")).unwrap();
+    let session: SessionId = released[2].1.parse().unwrap();
+    let upload = store.upload_of(&session).unwrap().unwrap();
+    let recordings = store.file(&upload, "recordings").unwrap().unwrap();
+    assert_eq!(store.chunk(&recordings, 0).unwrap().len(), 1319);
+    let key = "31f07e64cfecfc4a7ded1a3fc0e38028".parse().unwrap();
+    assert_eq!(store.invited(&key).unwrap(), Some((session, 1)));
+}
+
+fn check_version(database: &Path) -> i64 {
+    let connection = rusqlite::Connection::open(database).unwrap();
+    let version = connection.pragma_query_value(None, "user_version", |row| row.get(0));
+    version.unwrap()
+}
+
+fn fixture(version: i64) -> String {
+    let folder = env!("CARGO_MANIFEST_DIR");
+    format!("{folder}/tests/web/fixtures/version-{version}.db")
+}
+
 /// Before a database of an earlier version is brought up to date there is a copy of
 /// it, once.
 #[test]
 fn an_upgrade_leaves_a_copy_of_what_was_there() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    for version in [1, 2] {
-        let fixture = format!(
-            "{}/tests/web/fixtures/version-{version}.db",
-            env!("CARGO_MANIFEST_DIR")
-        );
+    drop(Sqlite::open(&at("new.db")).unwrap());
+    let current = check_version(&at("new.db"));
+    assert!(current >= 3);
+    for version in 1..current {
         let database = at(&format!("{version}.db"));
-        std::fs::copy(fixture, &database).unwrap();
+        std::fs::copy(fixture(version), &database).unwrap();
         drop(Sqlite::open(&database).unwrap());
         drop(Sqlite::open(&database).unwrap());
         let copy = at(&format!("{version}.db.v{version}-backup"));
@@ -221,7 +262,6 @@ fn an_upgrade_leaves_a_copy_of_what_was_there() {
             .filter(|file| text(file).contains(&format!("{version}.db.v")));
         assert_eq!(copies.count(), 1);
     }
-    drop(Sqlite::open(&at("new.db")).unwrap());
     assert!(
         files_in(folder.path())
             .iter()

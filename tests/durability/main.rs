@@ -5,5 +5,6 @@
 mod backups;
 mod disk;
 mod kills;
+mod people;
 mod server;
 mod torn;

@@ -58,7 +58,7 @@ async fn insert(
     for (number, mut file) in (0_i64..).zip(files) {
         let named: &[&(dyn ToSql + Sync)] = &[&upload, &number, &file.name, &file.kind];
         transaction.execute(new_file, named).await.map_err(fault)?;
-        let mut size = 0_i64;
+        let mut size = 0;
         for place in 0_i64.. {
             let read = fill(&mut file.content, &mut chunk).map_err(|error| StoreError::Unread {
                 name: file.name.clone(),
@@ -71,12 +71,13 @@ async fn insert(
                     .execute(&new_chunk, piece)
                     .await
                     .map_err(fault)?;
-                size += read as i64;
+                size += read;
             }
             if read < CHUNK {
                 break;
             }
         }
+        let size = i64::try_from(size).unwrap_or(i64::MAX);
         let length: &[&(dyn ToSql + Sync)] = &[&upload, &number, &size];
         transaction.execute(sized, length).await.map_err(fault)?;
     }

@@ -102,7 +102,7 @@ impl Postgres {
     /// What `work` finds, on another connection where one broke.
     fn ask<T>(
         &self,
-        work: impl AsyncFn(&mut Client) -> Result<T, tokio_postgres::Error>,
+        work: &impl AsyncFn(&mut Client) -> Result<T, tokio_postgres::Error>,
     ) -> Result<T, StoreError> {
         let attempts = async {
             let mut tries = 1;
@@ -124,7 +124,7 @@ impl Postgres {
 
     /// The rows that a statement finds.
     fn rows(&self, statement: &str, given: &[&(dyn ToSql + Sync)]) -> Result<Vec<Row>, StoreError> {
-        self.ask(async |client| {
+        self.ask(&async |client: &mut Client| {
             let statement = client.prepare_cached(statement).await?;
             client.query(&statement, given).await
         })

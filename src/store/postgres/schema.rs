@@ -10,7 +10,7 @@ use crate::store::StoreError;
 /// The schema's version; not that of the `SQLite` files.
 const VERSION: i64 = 1;
 
-/// Held while tables are made, so that of several servers that start one does: "MemR".
+/// Held while tables are made, so that of several servers that start one does.
 const LOCK: i64 = 0x4d65_6d52;
 
 /// What makes each version out of the one before, from nothing. A step that was
