@@ -18,6 +18,7 @@ mod learn;
 #[cfg(feature = "server")]
 mod log;
 mod output;
+mod replay;
 #[cfg(feature = "server")]
 mod restore;
 #[cfg(feature = "server")]
@@ -68,6 +69,8 @@ enum Command {
     Equivalent(equivalent::Args),
     /// Convert automata and samples between file formats.
     Convert(convert::Args),
+    /// Rebuild a session from its log, and check that nothing in it is made up.
+    Replay(replay::Args),
     /// Check task files, and write new ones.
     Task(task::Args),
     /// Run an experiment and write its tables.
@@ -89,6 +92,7 @@ pub fn main() -> ExitCode {
         Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::Equivalent(args)) => equivalent::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]

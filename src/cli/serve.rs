@@ -72,6 +72,7 @@ pub(crate) struct Args {
 pub(super) fn run(flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     let (args, _) = settings::resolve::<Args>(flags)?;
     refuse_public(args.addr.ip())?;
+    allow_many_connections();
     let _written = log::start(args.log_format, args.log.clone());
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
@@ -154,6 +155,21 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
     let served = server::run(opened.listener, state, stop).await;
     served.context("the server stopped")
 }
+
+/// Lets the process have as many connections as the system allows it: a common bound
+/// is 1024, and every open page of a session is one.
+#[cfg(unix)]
+pub(super) fn allow_many_connections() {
+    use rustix::process::{Resource, getrlimit, setrlimit};
+    let mut limit = getrlimit(Resource::Nofile);
+    limit.current = limit.maximum;
+    // Where this is refused, the bound stays as it was.
+    let _ = setrlimit(Resource::Nofile, limit);
+}
+
+/// There is no such bound.
+#[cfg(not(unix))]
+pub(super) fn allow_many_connections() {}
 
 /// There is no sign-in yet: whoever reaches the port can read and answer.
 fn refuse_public(address: IpAddr) -> anyhow::Result<()> {

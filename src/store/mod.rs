@@ -11,6 +11,7 @@ mod id;
 mod postgres;
 mod schema;
 mod sqlite;
+mod together;
 
 use std::io::Read;
 
@@ -200,16 +201,18 @@ pub trait Store: Send + Sync {
     /// # Errors
     ///
     /// If the database fails.
-    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
-        self.read_from(session, 0)
-    }
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError>;
 
     /// The entries of a session's log from this number on, in order.
     ///
     /// # Errors
     ///
     /// If the database fails.
-    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError>;
+    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {
+        let mut entries = self.read(session)?;
+        entries.retain(|entry| entry.seq >= seq);
+        Ok(entries)
+    }
 
     /// Whether other servers write to the same logs, so that what is in memory may be
     /// behind them.

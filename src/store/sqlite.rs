@@ -8,6 +8,7 @@ use rusqlite::ffi::{SQLITE_IOERR_SHMSIZE, SQLITE_IOERR_WRITE};
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionBehavior, params};
 
 use super::schema::{bring_up_to_date, check_header, earlier_version};
+use super::together::Together;
 use super::{
     Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, backup,
     files,
@@ -21,6 +22,7 @@ const LOG_LIMIT: i64 = 16 << 20;
 /// append returns. Not for network file systems.
 pub struct Sqlite {
     connection: Mutex<Connection>,
+    together: Together,
 }
 
 impl Sqlite {
@@ -108,38 +110,18 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     bring_up_to_date(&mut connection)?;
     Ok(Sqlite {
         connection: Mutex::new(connection),
+        together: Together::default(),
     })
 }
 
 impl Store for Sqlite {
     fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
-        let mut connection = self.connection();
-        let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-        let id = session.to_string();
-        let last: Option<i64> = transaction
-            .prepare_cached("SELECT max(seq) FROM entries WHERE session = ?1")?
-            .query_row([&id], |row| row.get(0))?;
-        let expected = last.map_or(0, |last| last.cast_unsigned() + 1);
-        if seq < expected {
-            return Err(StoreError::Taken {
-                session: *session,
-                seq,
-            });
-        }
-        if seq > expected {
-            return Err(StoreError::Gap {
-                session: *session,
-                seq,
-            });
-        }
-        if seq == 0 {
-            transaction.execute("INSERT INTO sessions (id) VALUES (?1)", [&id])?;
-        }
-        transaction
-            .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
-            .execute(params![id, seq.cast_signed(), body])?;
-        transaction.commit()?;
-        Ok(())
+        let connect = || self.connection();
+        self.together.append(*session, seq, body, connect)
+    }
+
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        self.read_from(session, 0)
     }
 
     fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {

@@ -8,14 +8,20 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod health;
+mod openapi;
 mod pages;
 mod parts;
 mod people;
 #[cfg(unix)]
 mod serve;
 mod site;
+#[cfg(unix)]
+mod stop;
 mod store;
+mod stuck;
 mod studio;
+mod unreliable;
 mod upload_faults;
 mod upload_limits;
 mod uploads;

@@ -8,7 +8,7 @@ use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, Response, StatusCode};
 use memrep::server::{AppState, app};
-use memrep::store::Sqlite;
+use memrep::store::{Sqlite, Store};
 use serde_json::Value;
 use tower::ServiceExt;
 
@@ -87,8 +87,13 @@ impl Site {
     }
 
     fn over(store: Sqlite) -> Self {
+        Self::over_any(Arc::new(store))
+    }
+
+    /// One over a store of the test's own.
+    pub(crate) fn over_any(store: Arc<dyn Store>) -> Self {
         Self {
-            router: app(AppState::new(Arc::new(store))),
+            router: app(AppState::new(store)),
         }
     }
 

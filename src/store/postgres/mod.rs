@@ -181,6 +181,10 @@ impl Store for Postgres {
         Ok(())
     }
 
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        self.read_from(session, 0)
+    }
+
     fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {
         let sql = concat!(
             "SELECT ",

@@ -19,8 +19,11 @@ pub mod dot_people;
 pub mod hoa;
 pub mod json;
 pub mod jsonl;
+mod locate;
 
 use std::fmt;
+
+pub use locate::locate;
 
 /// Why a text is not of the format: where, what was expected, what was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -79,6 +82,17 @@ impl ReadError {
     #[must_use]
     pub(crate) fn on_line(mut self, line: usize) -> Self {
         self.line = Some(line);
+        self
+    }
+
+    /// The same error, with the place of its field in this JSON text.
+    #[must_use]
+    pub(crate) fn placed_in(mut self, text: &str) -> Self {
+        if let (Some(path), None) = (&self.field, self.column) {
+            let (line, column) = locate::place(text, locate(text, path));
+            self.line = self.line.or(Some(line));
+            self.column = Some(column);
+        }
         self
     }
 

@@ -1,0 +1,89 @@
+//! Nobody is kept waiting without a word, and what breaks one session leaves the
+//! others alone.
+
+use std::sync::Arc;
+
+use axum::http::StatusCode;
+use serde_json::json;
+
+use crate::site::Site;
+use crate::unreliable::{Fault, Unreliable};
+
+async fn begin(site: &Site) -> String {
+    let reply = site
+        .post("/api/v1/sessions", json!({"task": "tomita:4"}))
+        .await;
+    reply.json()["id"].as_str().unwrap().to_owned()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_page_that_would_have_to_wait_says_so_and_keeps_the_answer() {
+    let store = Arc::new(Unreliable::in_memory());
+    let site = Site::over_any(store.clone());
+    let id = begin(&site).await;
+    let page = format!("/sessions/{id}");
+    let question = site.get(&page).await.main("data-question");
+
+    store.fail(Fault::Slow);
+    let answer = [("question", question.as_str()), ("answer", "equal")];
+    let answers = format!("{page}/answers");
+    assert_eq!(site.form(&answers, &answer).await.location(), page);
+    let waiting = site.get(&page).await;
+    assert_eq!(waiting.status, StatusCode::ACCEPTED);
+    assert!(waiting.text.contains("Still thinking"));
+    assert!(waiting.text.contains("Your answers are kept"));
+    assert!(waiting.text.contains("http-equiv=\"refresh\""));
+    // It is kept indeed, and another session is not kept waiting for this one.
+    let log = site.get(&format!("/api/v1{page}/log")).await.text;
+    assert_eq!(log.matches("\"event\":\"answered\"").count(), 1);
+
+    store.fail(Fault::None);
+    let next = site.get(&format!("/api/v1{page}/question")).await.json();
+    assert_ne!(next["number"].to_string(), question);
+    let after = site.get(&page).await;
+    assert_eq!(after.status, StatusCode::OK);
+    assert_eq!(after.main("data-question"), next["number"].to_string());
+    // Sent once more, as a page that lost its connection does, it counts once.
+    assert_eq!(site.form(&answers, &answer).await.location(), page);
+    let log = site.get(&format!("/api/v1{page}/log")).await.text;
+    assert_eq!(log.matches("\"event\":\"answered\"").count(), 1);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_session_that_breaks_leaves_the_others_alone() {
+    let store = Arc::new(Unreliable::in_memory());
+    let site = Site::over_any(store.clone());
+    let (broken, other) = (begin(&site).await, begin(&site).await);
+    store.fail(Fault::Panics(broken.parse().unwrap()));
+
+    // Its log is what breaks, and its log is read for this page.
+    let log = site.get(&format!("/api/v1/sessions/{broken}/log")).await;
+    assert_eq!(log.status, StatusCode::INTERNAL_SERVER_ERROR);
+    let error = log.json()["error"].clone();
+    assert_eq!(error["code"], "internal");
+    assert_eq!(error["request"], log.header("x-request-id"));
+    assert!(!log.text.contains("breaks its reader"));
+
+    // A server that has not got it in memory cannot show it, and says under which
+    // name its log has the cause.
+    let fresh = Site::over_any(store.clone());
+    for _ in 0..3 {
+        let page = fresh.get(&format!("/sessions/{broken}")).await;
+        assert_eq!(page.status, StatusCode::INTERNAL_SERVER_ERROR);
+        assert!(page.text.contains(page.header("x-request-id")));
+        assert!(page.text.contains("Answers that were accepted are kept"));
+    }
+    let page = fresh.get(&format!("/sessions/{other}")).await;
+    assert_eq!(page.status, StatusCode::OK);
+    let question = page.main("data-question").parse::<u32>().unwrap();
+    let body = json!({"question": question, "answer": "equal"});
+    let reply = fresh
+        .post(&format!("/api/v1/sessions/{other}/answers"), body)
+        .await;
+    assert_eq!(reply.status, StatusCode::OK);
+
+    // Nothing of it is lost.
+    store.fail(Fault::None);
+    let page = fresh.get(&format!("/sessions/{broken}")).await;
+    assert_eq!(page.status, StatusCode::OK);
+}

@@ -1,0 +1,93 @@
+//! A store that does as it is told until it is told to be slow, or to break.
+
+use std::sync::{Condvar, Mutex};
+
+use memrep::store::{
+    Entry, InviteKey, Listed, NewFile, SessionId, Sqlite, Store, StoreError, StoredFile, UploadId,
+};
+
+/// What goes wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Fault {
+    /// Nothing does.
+    None,
+    /// Questions are not kept before the fault is another.
+    Slow,
+    /// The log of this session breaks whoever reads it.
+    Panics(SessionId),
+}
+
+/// The store.
+pub(crate) struct Unreliable {
+    store: Sqlite,
+    fault: Mutex<Fault>,
+    changed: Condvar,
+}
+
+impl Unreliable {
+    /// One that works.
+    pub(crate) fn in_memory() -> Self {
+        Self {
+            store: Sqlite::in_memory().unwrap(),
+            fault: Mutex::new(Fault::None),
+            changed: Condvar::new(),
+        }
+    }
+
+    /// From now on this goes wrong.
+    pub(crate) fn fail(&self, fault: Fault) {
+        *self.fault.lock().unwrap() = fault;
+        self.changed.notify_all();
+    }
+}
+
+impl Store for Unreliable {
+    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
+        if body.contains("\"event\":\"asked\"") {
+            let fault = self.fault.lock().unwrap();
+            let is_slow = |fault: &mut Fault| *fault == Fault::Slow;
+            drop(self.changed.wait_while(fault, is_slow).unwrap());
+        }
+        self.store.append(session, seq, body)
+    }
+
+    fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        let breaks = *self.fault.lock().unwrap() == Fault::Panics(*session);
+        assert!(!breaks, "the log of {session:?} breaks its reader");
+        self.store.read(session)
+    }
+
+    fn list(&self, most: usize) -> Result<Vec<Listed>, StoreError> {
+        self.store.list(most)
+    }
+
+    fn begin(
+        &self,
+        session: &SessionId,
+        body: &str,
+        upload: &UploadId,
+        files: Option<&mut dyn Iterator<Item = NewFile<'_>>>,
+    ) -> Result<(), StoreError> {
+        self.store.begin(session, body, upload, files)
+    }
+
+    fn invite(&self, key: &InviteKey, session: &SessionId, person: u32) -> Result<(), StoreError> {
+        self.store.invite(key, session, person)
+    }
+
+    fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError> {
+        self.store.invited(key)
+    }
+
+    fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {
+        self.store.upload_of(session)
+    }
+
+    fn file(&self, upload: &UploadId, name: &str) -> Result<Option<StoredFile>, StoreError> {
+        self.store.file(upload, name)
+    }
+
+    fn chunk(&self, file: &StoredFile, place: u64) -> Result<Vec<u8>, StoreError> {
+        self.store.chunk(file, place)
+    }
+}
