@@ -28,7 +28,7 @@ fn of_environment(name: &str, usual: u64) -> u64 {
 fn lane(database: &Path, kills: u64, seed: u64) -> Found {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut people: Vec<Person> = (0..PEOPLE).map(|_| Person::default()).collect();
-    let tasks = ["tomita:1", "tomita:4"];
+    let tasks = ["tomita:4", "tomita:4"];
     for life in 0..kills {
         let mut server = Server::at(database);
         let moment = Duration::from_millis(rng.random_range(20..150));

@@ -113,20 +113,20 @@ impl Drop for Server {
     }
 }
 
-/// Sends a request; none unless the whole of the reply came back.
+/// Sends a request, with JSON or the text of a form; none unless the whole of the reply came back.
 pub(crate) fn ask(address: &str, method: &str, path: &str, body: &Value) -> Option<Reply> {
     let mut stream = TcpStream::connect(address).ok()?;
     stream
         .set_read_timeout(Some(Duration::from_secs(60)))
         .unwrap();
-    let body = if body.is_null() {
-        String::new()
-    } else {
-        body.to_string()
+    let (kind, body) = match body {
+        Value::Null => ("application/json", String::new()),
+        Value::String(form) => ("application/x-www-form-urlencoded", form.clone()),
+        json => ("application/json", json.to_string()),
     };
     write!(
         stream,
-        "{method} {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
+        "{method} {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n\r\n{body}",
         body.len()
     )
     .ok()?;
@@ -146,10 +146,15 @@ pub(crate) fn ask(address: &str, method: &str, path: &str, body: &Value) -> Opti
     })
 }
 
-/// What somebody answers who accepts words without a `0` (Tomita's first language),
-/// and agrees with every rule; none where nothing is asked.
+/// What somebody answers who accepts words without `000` (Tomita's fourth language);
+/// none where nothing is asked.
 pub(crate) fn answer(question: &Value) -> Option<Value> {
-    let accepts = |word: &Value| !word.to_string().contains('0');
+    let accepts = |word: &Value| {
+        let symbols = word.as_array().unwrap().iter();
+        let spelled: String = symbols.filter_map(Value::as_str).collect();
+        !spelled.contains("000")
+    };
+    let number = &question["number"];
     let said = match question["kind"].as_str()? {
         "membership" if accepts(&question["word"]) => "accept",
         "membership" => "reject",
@@ -158,10 +163,26 @@ pub(crate) fn answer(question: &Value) -> Option<Value> {
             (false, true) => "second",
             _ => "equal",
         },
-        "equivalence" => "correct",
+        "equivalence" => {
+            let rule = automata::format::json::read(&question["hypothesis"].to_string());
+            let rule = rule.unwrap().dfa;
+            let wrong = ["000", "1000", "0001", "11000", "100", "0010", "00100", "1"]
+                .map(|word| word.split("").filter(|s| !s.is_empty()).collect::<Vec<_>>());
+            let mut wrong = wrong.iter().filter(|word| {
+                let read = rule.alphabet().word(word.iter().copied()).unwrap();
+                rule.accepts(&read) != accepts(&json!(word))
+            });
+            let Some(word) = wrong.next() else {
+                return Some(json!({"question": number, "answer": "correct"}));
+            };
+            let label = accepts(&json!(word));
+            return Some(
+                json!({"question": number, "answer": "counterexample", "word": word, "label": label}),
+            );
+        }
         _ => return None,
     };
-    Some(json!({"question": question["number"], "answer": said}))
+    Some(json!({"question": number, "answer": said}))
 }
 
 /// The entries of a log in which somebody answered: question and reply.

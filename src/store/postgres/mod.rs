@@ -163,12 +163,12 @@ impl Store for Postgres {
         let appended = if seq == 0 {
             self.rows(
                 "WITH new AS (INSERT INTO sessions (id) VALUES ($1) ON CONFLICT DO NOTHING RETURNING id)
-                 INSERT INTO entries (session, seq, body) SELECT id, 0, $2 FROM new RETURNING seq",
+                 INSERT INTO entries (session, seq, body) SELECT id, 0, $2::text FROM new RETURNING seq",
                 &[&id, &body],
             )?
         } else {
             self.rows(
-                "INSERT INTO entries (session, seq, body) SELECT $1, $2, $3
+                "INSERT INTO entries (session, seq, body) SELECT $1::text, $2::bigint, $3::text
                  WHERE EXISTS (SELECT 1 FROM entries WHERE session = $1 AND seq = $2 - 1)
                  ON CONFLICT DO NOTHING RETURNING seq",
                 &[&id, &seq.cast_signed(), &body],

@@ -133,7 +133,7 @@ async fn pass_on(
     }
     let payloads = latest.iter().map(|(id, entries)| format!("{id} {entries}"));
     let payloads: Vec<String> = payloads.collect();
-    let notify = "SELECT pg_notify($1, payload) FROM unnest($2::text[]) AS payload";
+    let notify = "SELECT pg_notify($1::text, payload) FROM unnest($2::text[]) AS payload";
     client
         .execute(notify, &[&CHANNEL, &payloads])
         .await
