@@ -2,7 +2,7 @@
 
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,9 +12,9 @@ use clap::ArgMatches;
 use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
 
-use super::{log, settings};
+use super::{database, log, settings};
 use crate::server::{self, AppState};
-use crate::store::{Sqlite, Store};
+use crate::store::Store;
 
 /// How long work that nobody waits for any more may go on at the end.
 const LAST_WORK: Duration = Duration::from_secs(1);
@@ -43,8 +43,9 @@ pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub(super) addr: SocketAddr,
-    /// The database file in which sessions are kept; created if there is none.
-    #[arg(long, value_name = "PATH", default_value = "memrep.db")]
+    /// The database file in which sessions are kept, created if there is none; or the
+    /// address of a `PostgreSQL` database that several servers share.
+    #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db")]
     pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.
@@ -103,11 +104,13 @@ async fn open(args: &Args) -> anyhow::Result<Opened> {
         Some(address) => Some(bind(address, "--metrics-addr").await?),
         None => None,
     };
-    let store = Sqlite::open(Path::new(&args.database))?;
+    let named = args.database.clone();
+    let opening = tokio::task::spawn_blocking(move || database::open(&named));
+    let store = opening.await.context("the store cannot be opened")??;
     Ok(Opened {
         listener,
         figures,
-        store: Arc::new(store),
+        store,
     })
 }
 

@@ -9,10 +9,12 @@ mod clicks;
 mod conflicts;
 mod desk;
 mod health;
+mod invariants;
 mod openapi;
 mod pages;
 mod parts;
 mod people;
+mod random;
 #[cfg(unix)]
 mod serve;
 mod site;
