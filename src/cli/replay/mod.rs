@@ -85,7 +85,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         if let Some(at) = args.at {
             let last = lines.len() - 1;
             if at > last as u64 {
-                bail!("there is no entry {at}: the last one is {last}");
+                bail!(Elsewhere(format!(
+                    "there is no entry {at}: the last one is {last}"
+                )));
             }
             lines.truncate(at as usize + 1);
         }

@@ -28,7 +28,7 @@ pub fn locate(text: &str, path: &str) -> usize {
 /// The line of a byte, and its column in bytes, both from 1.
 pub(super) fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text.as_bytes()[..byte.min(text.len())];
-    let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+    let line = before.split(|byte| *byte == b'\n').count();
     let column = before
         .iter()
         .rev()

@@ -121,11 +121,10 @@ impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {
             write!(f, "line {line}")?;
-            match self.column {
-                Some(column) => write!(f, ", column {column}: ")?,
-                None if self.field.is_some() => f.write_str(", ")?,
-                None => f.write_str(": ")?,
+            if let Some(column) = self.column {
+                write!(f, ", column {column}")?;
             }
+            f.write_str(if self.field.is_some() { ", " } else { ": " })?;
         }
         if let Some(field) = &self.field {
             write!(f, "`{field}`: ")?;
