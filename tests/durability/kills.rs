@@ -31,7 +31,7 @@ fn lane(database: &Path, kills: u64, seed: u64) -> Found {
     let tasks = ["tomita:4", "tomita:4"];
     for life in 0..kills {
         let mut server = Server::at(database);
-        let moment = Duration::from_millis(rng.random_range(20..150));
+        let moment = Duration::from_millis(rng.random_range(20..250));
         let enough = AtomicBool::new(false);
         let address = server.address.clone();
         std::thread::scope(|scope| {

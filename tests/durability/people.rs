@@ -62,7 +62,19 @@ impl Person {
             None => json!({"kind": "done"}),
         };
         let Some(answer) = answer(&question) else {
-            let created = ask(address, "POST", "/api/v1/sessions", &json!({"task": task}))?;
+            // Quick questions mostly, so that much happens between two kills; now and
+            // then one that is thought about, and whose answers are tried beforehand.
+            let strategies = [
+                "thesis",
+                "membership",
+                "thesis",
+                "thesis",
+                "membership",
+                "bayes",
+            ];
+            let strategy = strategies[self.sessions.len() % strategies.len()];
+            let new = json!({"task": task, "strategy": strategy});
+            let created = ask(address, "POST", "/api/v1/sessions", &new)?;
             assert_eq!(created.status, 201, "{created:?}");
             let id = created.json()["id"].as_str().unwrap().to_owned();
             self.sessions.push(Taught {
