@@ -40,7 +40,7 @@ pub(crate) fn edits(data: &[u8]) {
             2 => lines.swap(at, other),
             3 => lines.truncate(at + 1),
             4 => {
-                let donor = leaf(&mut lines[other].clone(), edit[3]).map(|leaf| leaf.take());
+                let donor = leaf(&mut lines[other].clone(), edit[3]).map(Value::take);
                 if let (Some(donor), Some(leaf)) = (donor, leaf(&mut lines[at], edit[3])) {
                     *leaf = donor;
                 }

@@ -277,11 +277,9 @@ impl Session {
         };
         self.standing.remove(place);
         self.withdrawn.insert(number);
-        if self.learner.retract(AnswerId(number)) {
-            Ok(())
-        } else {
-            Err(format!("the learner has no answer {number} to withdraw"))
-        }
+        // A learner that was never told it: one that was would have its words in its
+        // search still, which shows in what is asked where the budget ends the search.
+        self.rebuild()
     }
 
     /// Another answer in the place of one that stands.

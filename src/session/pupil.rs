@@ -24,8 +24,6 @@ pub(super) trait Pupil: Send {
         reply: Reply<Atom>,
     ) -> Result<(), String>;
 
-    fn retract(&mut self, answer: AnswerId) -> bool;
-
     fn counts(&self) -> Counts;
 
     /// Whether the answer to this question may still teach something; never to an
@@ -136,10 +134,6 @@ where
         let question = inward(question).ok_or_else(foreign)?;
         let reply = told(reply).ok_or_else(foreign)?;
         Learner::record(self, answer, question, round, reply).map_err(|error| error.to_string())
-    }
-
-    fn retract(&mut self, answer: AnswerId) -> bool {
-        Learner::retract(self, answer)
     }
 
     fn counts(&self) -> Counts {

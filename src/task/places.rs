@@ -136,15 +136,23 @@ impl Places {
         Place::of(text, place.span.start)
     }
 
-    /// A character of a text, or of one of its lines.
+    /// A character of a text, or of one of its lines; where the text begins, if there
+    /// is no such character.
     fn inside(&self, index: usize, then: Option<Step<'_>>, text: &str) -> Place {
         let start = Place::of(text, self.span.start);
+        let found = self.counted(start, index, then, text);
+        let line = text.lines().nth(found.line.saturating_sub(1));
+        let is_there = line.is_some_and(|line| found.column <= line.chars().count());
+        if is_there { found } else { start }
+    }
+
+    fn counted(&self, start: Place, index: usize, then: Option<Step<'_>>, text: &str) -> Place {
         let source = text.get(self.span.clone()).unwrap_or_default();
         let is_long = source.starts_with("\"\"\"") || source.starts_with("'''");
         match then {
             // One line of an array of lines; the quote comes first.
             None if !is_long => Place {
-                column: start.column + 1 + index,
+                column: (start.column + 1).saturating_add(index),
                 ..start
             },
             // Several lines written in one: there is no better place.
@@ -159,12 +167,12 @@ impl Places {
                 let begins_below = rest.starts_with('\n') || rest.starts_with("\r\n");
                 let (line, before) = match (index, begins_below) {
                     (0, false) => (start.line, start.column + 3),
-                    (_, false) => (start.line + index, 1),
-                    (_, true) => (start.line + index + 1, 1),
+                    (_, false) => (start.line.saturating_add(index), 1),
+                    (_, true) => ((start.line + 1).saturating_add(index), 1),
                 };
                 Place {
                     line,
-                    column: before + column,
+                    column: column.saturating_add(before),
                 }
             }
         }
@@ -206,6 +214,22 @@ mod tests {
             ("nowhere", 1, 1),
         ] {
             assert_eq!(places.find(path, text), Place { line, column }, "{path}");
+        }
+    }
+
+    /// A key may look like a path of a text that is not so long.
+    #[test]
+    fn indices_beyond_a_text_lead_to_its_beginning() {
+        let text = "a = \"x\"\nmap = \"\"\"\n..\n\"\"\"\n";
+        let (_, places) = read(text).unwrap();
+        let beyond = usize::MAX;
+        for (path, line, column) in [
+            (format!("a[{beyond}]"), 1, 5),
+            (format!("map[{beyond}]"), 2, 7),
+            (format!("map[0][{beyond}]"), 2, 7),
+            (format!("map[{beyond}][{beyond}]"), 2, 7),
+        ] {
+            assert_eq!(places.find(&path, text), Place { line, column }, "{path}");
         }
     }
 

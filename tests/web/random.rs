@@ -91,7 +91,8 @@ impl Caller {
         let made = caller
             .json(Method::POST, "/api/v1/sessions".to_owned(), task)
             .await;
-        caller.id = made.json()["id"].as_str().unwrap().to_owned();
+        let made = made.json();
+        made["id"].as_str().unwrap().clone_into(&mut caller.id);
         caller
     }
 

@@ -252,7 +252,11 @@ fn pieces_are_the_same_as_the_whole() {
     let error = (0..40)
         .find_map(|_| reader.feed(&vec![b'x'; 1 << 16]).err())
         .unwrap();
-    assert!(error.to_string().starts_with("line 1: the line is longer"));
+    assert!(
+        error
+            .to_string()
+            .starts_with("line 1, column 1048577: the line is longer")
+    );
 }
 
 /// Where the recordings do not suffice, the class tells what would.

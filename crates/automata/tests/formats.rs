@@ -222,12 +222,12 @@ fn jsonl_over_a_known_alphabet() {
     let error = jsonl::read_over(text, &support::alphabet(1)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        r#"line 1, `word[0]`: expected a symbol of the alphabet {a}, found "b""#
+        r#"line 1, column 10, `word[0]`: expected a symbol of the alphabet {a}, found "b""#
     );
     let error = jsonl::read_over("\n{\"alphabet\":[\"b\",\"a\"]}\n", &alphabet).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 2, `alphabet`: expected the alphabet {a, b}, found {b, a}"
+        "line 2, column 13, `alphabet`: expected the alphabet {a, b}, found {b, a}"
     );
 }
 
