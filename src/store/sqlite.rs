@@ -8,7 +8,8 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionB
 
 use super::schema::{bring_up_to_date, check_header};
 use super::{
-    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files,
+    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, Visits,
+    files,
 };
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
@@ -69,7 +70,7 @@ impl Sqlite {
     }
 
     /// A panic elsewhere cannot have left a transaction open: they roll back.
-    fn connection(&self) -> MutexGuard<'_, Connection> {
+    pub(super) fn connection(&self) -> MutexGuard<'_, Connection> {
         self.connection
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -210,6 +211,10 @@ impl Store for Sqlite {
                 Err(_) => Err(rusqlite::Error::InvalidColumnName(id).into()),
             })
             .transpose()
+    }
+
+    fn visits(&self) -> &dyn Visits {
+        self
     }
 
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {
