@@ -15,6 +15,8 @@ mod learn;
 mod log;
 mod output;
 #[cfg(feature = "server")]
+mod password;
+#[cfg(feature = "server")]
 mod serve;
 #[cfg(feature = "server")]
 mod settings;
@@ -48,6 +50,9 @@ enum Command {
     /// Tell the settings that `serve` would run with, and where each comes from.
     #[cfg(feature = "server")]
     Config(config::Args),
+    /// Set the owner's password, without which nobody else's machine is served.
+    #[cfg(feature = "server")]
+    Password(password::Args),
     /// Learn a target from a scripted teacher.
     Learn(learn::Args),
     /// Find the smallest automaton consistent with a sample.
@@ -81,6 +86,8 @@ pub fn main() -> ExitCode {
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Config(args)) => config::run(&args, flags),
+        #[cfg(feature = "server")]
+        Some(Command::Password(args)) => password::run(&args, flags),
         #[cfg(feature = "server")]
         Some(Command::Serve(_)) | None => serve::run(flags),
         #[cfg(not(feature = "server"))]

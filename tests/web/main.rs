@@ -8,9 +8,11 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod door;
 mod pages;
 mod parts;
 mod people;
+mod routes;
 #[cfg(unix)]
 mod serve;
 mod site;

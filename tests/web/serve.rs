@@ -163,9 +163,17 @@ fn what_it_cannot_do_it_says_with_the_way_out() {
     assert!(!other.exists(), "a server that cannot start leaves no file");
     let public = refused(command(&other, &["--addr", "0.0.0.0:0"]));
     assert!(
-        public.contains("no sign-in yet") && public.contains("127.0.0.1"),
+        public.contains("no owner's password") && public.contains("memrep password"),
         "{public}"
     );
+    for proxied in [
+        ["--origin", "https://teach.example.org"].as_slice(),
+        &["--behind-proxy"],
+    ] {
+        let arguments = [&["--addr", "127.0.0.1:0"], proxied].concat();
+        let unlocked = refused(command(&other, &arguments));
+        assert!(unlocked.contains("no owner's password"), "{unlocked}");
+    }
     let text = folder.path().join("notes.txt");
     std::fs::write(
         &text,
