@@ -349,6 +349,7 @@ async fn what_cannot_be_meant_is_refused() {
         ("people", json!({"name": ""}), "name"),
         ("people", json!({"name": " \n"}), "name"),
         ("people", json!({"name": "a\u{0}b"}), "name"),
+        ("people", json!({"name": "a\u{202e}b"}), "name"),
         ("people", json!({"name": long}), "name"),
         ("people/terms", json!({"answers": 0}), "answers"),
         ("people/terms", json!({"answers": 21}), "answers"),
@@ -388,7 +389,7 @@ async fn what_cannot_be_meant_is_refused() {
     );
     let told = site.get(&format!("{session}/people")).await.json();
     assert_eq!(told["people"][0]["answers"], 1, "it counts once");
-    let hostile = "<script>alert(1)</script>\u{202e}";
+    let hostile = "<script>alert(1)</script>'\"{{7*7}}";
     invite(&site, &session, &[hostile]).await;
     let page = site
         .get(&format!("{session}/people").replace("/api/v1", ""))
