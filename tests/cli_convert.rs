@@ -216,7 +216,7 @@ fn bad_files_are_named_with_the_place() {
     check_fails(
         &folder,
         &["convert", "row.json", "out.dot"],
-        "row.json: `delta[1][1]`: row 1, symbol 1: state 2 does not exist, states are numbered from 0 to 1",
+        "row.json: line 1, column 126, `delta[1][1]`: row 1, symbol 1: state 2 does not exist, states are numbered from 0 to 1",
     );
     check_fails(
         &folder,

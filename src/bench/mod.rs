@@ -20,6 +20,8 @@ mod published;
 mod results;
 mod rivals;
 mod run;
+#[cfg(feature = "server")]
+pub mod serve;
 mod subject;
 mod summary;
 mod table;

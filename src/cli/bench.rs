@@ -1,6 +1,8 @@
 //! `memrep bench`: runs an experiment and writes its tables.
 
 mod passive;
+#[cfg(feature = "server")]
+mod serve;
 mod suite;
 
 use std::path::PathBuf;
@@ -40,6 +42,9 @@ enum Command {
     Monotone(suite::DrawnOptions),
     /// Smallest automata for random samples, beside dfa-identify: identify.md.
     Identify(passive::Args),
+    /// Scripted people over real HTTP, at a server of their own: serve.md.
+    #[cfg(feature = "server")]
+    Serve(serve::Args),
 }
 
 /// Runs the command.
@@ -54,6 +59,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Command::Tasks(options) => suite::run_drawn(Experiment::Tasks, options),
         Command::Monotone(options) => suite::run_drawn(Experiment::Monotone, options),
         Command::Identify(args) => passive::run(args),
+        #[cfg(feature = "server")]
+        Command::Serve(args) => serve::run(args),
     }
 }
 

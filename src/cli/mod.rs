@@ -3,10 +3,14 @@
 //! Results go to stdout, progress and errors to stderr. The exit status is 0
 //! for done, 1 where the answer is "no", 2 for bad input or usage.
 
+#[cfg(feature = "server")]
+mod backup;
 mod bench;
 #[cfg(feature = "server")]
 mod config;
 mod convert;
+#[cfg(feature = "server")]
+mod database;
 mod equivalent;
 mod files;
 mod identify;
@@ -16,6 +20,9 @@ mod log;
 mod output;
 #[cfg(feature = "server")]
 mod password;
+mod replay;
+#[cfg(feature = "server")]
+mod restore;
 #[cfg(feature = "server")]
 mod serve;
 #[cfg(feature = "server")]
@@ -53,6 +60,12 @@ enum Command {
     /// Set the owner's password, without which nobody else's machine is served.
     #[cfg(feature = "server")]
     Password(password::Args),
+    /// Copy the database while a server writes to it.
+    #[cfg(feature = "server")]
+    Backup(backup::Args),
+    /// Put a backup in the place of the database.
+    #[cfg(feature = "server")]
+    Restore(restore::Args),
     /// Learn a target from a scripted teacher.
     Learn(learn::Args),
     /// Find the smallest automaton consistent with a sample.
@@ -61,6 +74,8 @@ enum Command {
     Equivalent(equivalent::Args),
     /// Convert automata and samples between file formats.
     Convert(convert::Args),
+    /// Rebuild a session from its log, and check that nothing in it is made up.
+    Replay(replay::Args),
     /// Check task files, and write new ones.
     Task(task::Args),
     /// Run an experiment and write its tables.
@@ -82,8 +97,13 @@ pub fn main() -> ExitCode {
         Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::Equivalent(args)) => equivalent::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
+        #[cfg(feature = "server")]
+        Some(Command::Backup(args)) => backup::run(&args),
+        #[cfg(feature = "server")]
+        Some(Command::Restore(args)) => restore::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Config(args)) => config::run(&args, flags),
         #[cfg(feature = "server")]

@@ -2,15 +2,13 @@
 //! by a pipe: what is in arguments or in the environment, others can read.
 
 use std::io::{BufRead as _, IsTerminal as _, Read as _, Write as _};
-use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
 use clap::ArgMatches;
 
-use super::{serve, settings};
+use super::{database, serve, settings};
 use crate::server::hash_password;
-use crate::store::{Sqlite, Store as _};
 
 /// More than any password has.
 const MOST_BYTES: u64 = 4096;
@@ -44,11 +42,11 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     } else {
         Some(hash_password(&ask()?)?)
     };
-    let store = Sqlite::open(Path::new(&serve.database))?;
+    let store = database::open(&serve.database)?;
     store.visits().set_password(hash.as_deref())?;
     let done = if args.remove { "removed" } else { "set" };
-    let database = settings::masked(&serve.database);
-    println!("The owner's password of {database} is {done}. All visits have ended.");
+    let named = settings::masked(&serve.database);
+    println!("The owner's password of {named} is {done}. All visits have ended.");
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::ErrorKind;
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,9 +12,9 @@ use clap::ArgMatches;
 use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
 
-use super::{log, settings};
+use super::{database, log, settings};
 use crate::server::{self, AppState, Origin, Reached};
-use crate::store::{Sqlite, Store};
+use crate::store::Store;
 
 /// How long work that nobody waits for any more may go on at the end.
 const LAST_WORK: Duration = Duration::from_secs(1);
@@ -43,8 +43,9 @@ pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub(super) addr: SocketAddr,
-    /// The database file in which sessions are kept; created if there is none.
-    #[arg(long, value_name = "PATH", default_value = "memrep.db")]
+    /// The database file in which sessions are kept, created if there is none; or the
+    /// address of a `PostgreSQL` database that several servers share.
+    #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db")]
     pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.
@@ -79,6 +80,7 @@ pub(crate) struct Args {
 /// Runs the command, given how it was called.
 pub(super) fn run(flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     let (args, _) = settings::resolve::<Args>(flags)?;
+    allow_many_connections();
     let _written = log::start(args.log_format, args.log.clone());
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
@@ -110,12 +112,17 @@ async fn open(args: &Args) -> anyhow::Result<Opened> {
         Some(address) => Some(bind(address, "--metrics-addr").await?),
         None => None,
     };
-    let store = Sqlite::open(Path::new(&args.database))?;
-    refuse_unlocked(args, &store)?;
+    let (named, is_public) = (args.database.clone(), is_public(args));
+    let opening = tokio::task::spawn_blocking(move || {
+        let store = database::open(&named)?;
+        refuse_unlocked(&named, is_public, &*store)?;
+        anyhow::Ok(store)
+    });
+    let store = opening.await.context("the store cannot be opened")??;
     Ok(Opened {
         listener,
         figures,
-        store: Arc::new(store),
+        store,
     })
 }
 
@@ -170,22 +177,32 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
     served.context("the server stopped")
 }
 
+/// Lets the process have as many connections as the system allows it: a common bound
+/// is 1024, and every open page of a session is one.
+#[cfg(unix)]
+pub(super) fn allow_many_connections() {
+    use rustix::process::{Resource, getrlimit, setrlimit};
+    let mut limit = getrlimit(Resource::Nofile);
+    limit.current = limit.maximum;
+    // Where this is refused, the bound stays as it was.
+    let _ = setrlimit(Resource::Nofile, limit);
+}
+
+/// There is no such bound.
+#[cfg(not(unix))]
+pub(super) fn allow_many_connections() {}
+
 /// Whether other machines can reach the server, by itself or through a proxy.
 fn is_public(args: &Args) -> bool {
     !args.addr.ip().is_loopback() || !args.origin.is_empty() || args.behind_proxy
 }
 
 /// Whoever reaches a server without a password can read and answer.
-fn refuse_unlocked(args: &Args, store: &dyn Store) -> anyhow::Result<()> {
-    if is_public(args) && store.visits().password()?.is_none() {
+fn refuse_unlocked(database: &str, is_public: bool, store: &dyn Store) -> anyhow::Result<()> {
+    if is_public && store.visits().password()?.is_none() {
         bail!(
             "other machines could reach this server, and it has no owner's password: set one with `memrep password --database {}`; then serve on 127.0.0.1 behind a proxy that has a certificate (memrep serve --behind-proxy --origin https://teach.example.org), since without TLS the password can be read on its way. Or stay on 127.0.0.1, and come from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)",
-            settings::masked(&args.database)
-        );
-    }
-    if !args.addr.ip().is_loopback() {
-        tracing::warn!(
-            "passwords and answers can be read on their way unless a proxy before this server speaks TLS"
+            settings::masked(database)
         );
     }
     Ok(())

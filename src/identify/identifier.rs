@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use automata::{Alphabet, Dfa, Word};
 
-use super::contradiction::{self, Finding};
+use super::contradiction::{self, Finding, Ledger};
 use super::engine::{Engine, Query, Verdict};
 use super::enumerate::Enumerator;
 use super::particles::Particles;
@@ -151,7 +151,14 @@ impl Identifier {
                 }
             }
         }
-        Err(Failure::Contradiction(self.no_automaton(&core, budget)))
+        let contradiction = self.no_automaton(&core, budget);
+        if self.is_disproved(&contradiction, budget) {
+            // Nothing that this engine learned is to be used again.
+            self.engines = Engines::default();
+            self.at_least = 1;
+            return Err(Failure::OverBudget { at_least: 1 });
+        }
+        Err(Failure::Contradiction(contradiction))
     }
 
     /// Consistent automata of several sizes with their chances after what was
@@ -191,6 +198,25 @@ impl Identifier {
         // by chains that are astray says little of what is.
         let smallest = self.smallest(SEARCHED, wish.seed, budget)?;
         Ok(spread::found(&smallest, bound, wish))
+    }
+
+    /// Whether engines that have seen nothing yet find an automaton where others found
+    /// none. Only SAT solvers keep what may have misled them.
+    fn is_disproved(&self, contradiction: &Contradiction, budget: &mut Budget) -> bool {
+        if !self.engines.have_solved() {
+            return false;
+        }
+        let ledger = Ledger::new(&self.problem, &self.standing);
+        let answers = contradiction.answers.iter().copied().collect();
+        let query = Query {
+            problem: &self.problem,
+            standing: &ledger.facts(&answers),
+            states: self.settings.max_states.max(1),
+            count: 1,
+            seed: 0,
+        };
+        let verdict = Engines::default().search(self.settings.engine, &query, budget);
+        matches!(verdict, Verdict::Found { .. })
     }
 
     /// Why no automaton within the bound is consistent.
@@ -283,6 +309,11 @@ impl Engines {
         }
     }
 
+    /// Whether a SAT solver was asked.
+    fn have_solved(&self) -> bool {
+        self.varisat.is_some() || self.batsat.is_some()
+    }
+
     fn varisat(&mut self) -> &mut dyn Engine {
         self.varisat
             .get_or_insert_with(sat::varisat_engine)
@@ -325,4 +356,39 @@ fn trusted(engine: &mut dyn Engine, query: &Query<'_>, budget: &mut Budget) -> V
         }
     }
     verdict
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A solver gone wrong: nothing is ever consistent.
+    struct Liar;
+
+    impl Engine for Liar {
+        fn search(&mut self, query: &Query<'_>, _: &mut Budget) -> Verdict {
+            Verdict::None {
+                core: query.standing.to_vec(),
+            }
+        }
+    }
+
+    #[test]
+    fn a_contradiction_that_is_none_is_never_shown() {
+        let alphabet = Alphabet::new(["a", "b"]).unwrap();
+        let settings = Settings {
+            engine: EngineChoice::Varisat,
+            max_states: 3,
+        };
+        let mut identifier = Identifier::new(alphabet.clone(), settings);
+        for (place, (word, accepted)) in [("a", true), ("b", false)].into_iter().enumerate() {
+            let atom = alphabet.word([word]).unwrap();
+            identifier.add(Some(AnswerId(place as u32)), Fact::Label { atom, accepted });
+        }
+        identifier.engines.varisat = Some(Box::new(Liar));
+        let mut smallest = || identifier.smallest(1, 0, &mut Budget::new(1_000_000));
+        assert_eq!(smallest().err(), Some(Failure::OverBudget { at_least: 1 }));
+        // It is not asked again.
+        assert_eq!(smallest().unwrap().automata[0].size(), 2);
+    }
 }

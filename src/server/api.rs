@@ -17,13 +17,12 @@ use super::error::{ApiError, WebError};
 use super::export::{self, Format};
 use super::forms;
 use super::upload::under_task;
-use crate::learner::{Question, Reply};
+use crate::learner::Reply;
 use crate::session::{
-    Atom, Concept, Fields, MAX_STATES, Malformed, Position, QuestionText, RISK, SETUP_KEYS,
-    Session, Setup, Task, ready,
+    Concept, Fields, MAX_STATES, Malformed, Position, RISK, Refusal, SETUP_KEYS, Session, Setup,
+    Task, ready,
 };
 use crate::store::SessionId;
-use crate::world::Shown;
 
 /// What a handler answers.
 pub(crate) type Answer = Result<Json<Value>, ApiError>;
@@ -33,6 +32,7 @@ pub(crate) type Body = Result<Bytes, BytesRejection>;
 /// All routes but that of uploads, relative to `/api/v1`.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
+        .route("/openapi.json", get(description))
         .route("/sessions", get(list))
         .route("/sessions/{id}", get(state))
         .route("/sessions/{id}/question", get(question))
@@ -46,6 +46,11 @@ pub(crate) fn routes() -> Router<AppState> {
         .route("/sessions/{id}/concept", get(concept))
         .route("/sessions/{id}/log", get(log))
         .route("/sessions/{id}/live", get(super::live::live))
+}
+
+/// What the routes are, for programs that write clients.
+async fn description() -> Response {
+    super::typed("application/json", include_str!("openapi.json").to_owned())
 }
 
 /// The JSON of a request.
@@ -128,74 +133,9 @@ async fn state(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
     Ok(Json(app.teaching.look(id, view).await?))
 }
 
-/// The next question, as `interfaces` fixes it.
-fn describe(session: &Session, position: &Position) -> Value {
-    match position {
-        Position::Thinking => json!({"kind": "thinking"}),
-        Position::Asking(number) => describe_question(session, *number),
-        Position::Conflict(conflict) => {
-            let mut value = serde_json::to_value(conflict).unwrap_or_default();
-            value["kind"] = "conflict".into();
-            value["message"] = session.explain(conflict).into();
-            value
-        }
-        Position::Done(hypothesis) => {
-            let mut value = json!({"kind": "done"});
-            show_rule(&mut value, session, hypothesis);
-            if let Some(atom) = session.beyond() {
-                value["beyond"] = session.universe().text(&atom).bare();
-            }
-            value
-        }
-    }
-}
-
-/// A question that was put, as `interfaces` fixes it.
-pub(crate) fn describe_question(session: &Session, number: u32) -> Value {
-    let Some(asked) = session.asked(number) else {
-        return json!({"kind": "thinking"});
-    };
-    let question = QuestionText::of(&asked.question, session.universe());
-    let mut value = serde_json::to_value(question).unwrap_or_default();
-    value["number"] = (number).into();
-    let atoms: &[&Atom] = match &asked.question {
-        Question::Membership { atom } => &[atom],
-        Question::Comparison { first, second } => &[first, second],
-        Question::Equivalence { hypothesis } => {
-            show_rule(&mut value, session, hypothesis);
-            &[]
-        }
-    };
-    let shown = atoms.iter().filter_map(|atom| match atom {
-        Atom::Word(word) => session.world()?.shown(word),
-        Atom::Point(_) | Atom::Item(_) => None,
-    });
-    let shown: Vec<Shown<'_>> = shown.collect();
-    if !shown.is_empty() {
-        value["shown"] = json!(shown);
-    }
-    if asked.hurried {
-        value["hurried"] = true.into();
-    }
-    if let Some(left) = &asked.left {
-        value["left"] = json!(left);
-        value["removed"] = json!(asked.removed);
-    }
-    value
-}
-
-/// The whole rule; and the learned part, where that is not all of it.
-fn show_rule(value: &mut Value, session: &Session, learned: &Concept) {
-    let universe = session.universe();
-    value["hypothesis"] = json!(universe.rule(&session.whole(learned)));
-    if session.has_prior() {
-        value["learned"] = json!(universe.rule(learned));
-    }
-}
-
 async fn question(State(app): State<AppState>, Path(id): Path<String>) -> Answer {
     let id = session_id(&id)?;
-    let view = |session: &Session| describe(session, session.position());
+    let view = |session: &Session| session.describe(session.position());
     Ok(Json(app.teaching.look(id, view).await?))
 }
 
@@ -221,7 +161,11 @@ async fn samples(State(app): State<AppState>, Path(id): Path<String>) -> Answer 
     Ok(Json(app.teaching.look(id, view).await??))
 }
 
-async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+async fn answer(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+    body: Body,
+) -> Result<Response, ApiError> {
     let id = session_id(&id)?;
     let body = read_body(body)?;
     let decide = move |session: &Session| {
@@ -239,7 +183,16 @@ async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body)
         }
         Ok(session.agree(number, Some(looked as u32))?)
     };
-    Ok(Json(app.teaching.act(id, decide, describe).await?))
+    match app.teaching.act(id, decide, Session::describe).await {
+        Ok(question) => Ok(Json(question).into_response()),
+        // Somebody else was faster: what is asked now comes along.
+        Err(error @ WebError::Refused(Refusal::Closed { .. })) => {
+            let view = |session: &Session| session.describe(session.position());
+            let question = app.teaching.look(id, view).await?;
+            Ok(ApiError(error).beside("question", &question))
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 async fn change(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
@@ -252,7 +205,7 @@ async fn change(State(app): State<AppState>, Path(id): Path<String>, body: Body)
         let reply = forms::json_reply(&fields, session.universe())?;
         Ok(session.change(number, &reply)?)
     };
-    Ok(Json(app.teaching.act(id, decide, describe).await?))
+    Ok(Json(app.teaching.act(id, decide, Session::describe).await?))
 }
 
 async fn retract(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
@@ -263,7 +216,7 @@ async fn retract(State(app): State<AppState>, Path(id): Path<String>, body: Body
         fields.only(&["question"])?;
         Ok(session.retract(forms::question_number(&fields)?)?)
     };
-    Ok(Json(app.teaching.act(id, decide, describe).await?))
+    Ok(Json(app.teaching.act(id, decide, Session::describe).await?))
 }
 
 async fn undo(State(app): State<AppState>, Path(id): Path<String>, bytes: Bytes) -> Answer {
@@ -278,7 +231,7 @@ async fn undo(State(app): State<AppState>, Path(id): Path<String>, bytes: Bytes)
         Fields::of(&body, "")?.only(&[])?;
         Ok(session.undo()?)
     };
-    Ok(Json(app.teaching.act(id, decide, describe).await?))
+    Ok(Json(app.teaching.act(id, decide, Session::describe).await?))
 }
 
 async fn enlarge(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
@@ -292,7 +245,7 @@ async fn enlarge(State(app): State<AppState>, Path(id): Path<String>, body: Body
             .ok_or_else(|| Malformed::new("max_states", "give the new bound on states"))?;
         Ok(session.enlarge(bound)?)
     };
-    Ok(Json(app.teaching.act(id, decide, describe).await?))
+    Ok(Json(app.teaching.act(id, decide, Session::describe).await?))
 }
 
 async fn automaton(

@@ -15,10 +15,6 @@ use crate::store::SessionId;
 /// How many folded sessions are kept in memory; the others wait in the store.
 const KEPT: usize = 600;
 
-/// So long after the last who waited has gone, work goes on: a page that waits asks
-/// every other second.
-const GRACE: Duration = Duration::from_secs(10);
-
 /// A session's place in memory.
 #[derive(Default)]
 pub(crate) struct Desk {
@@ -42,10 +38,14 @@ impl Desk {
         fresh
     }
 
-    /// Somebody waits for what is done here, until the guard goes.
-    pub(crate) fn wait(self: &Arc<Self>) -> Waiting {
+    /// Somebody waits for what is done here, until the guard goes. So long after the
+    /// last who waited has gone, work goes on.
+    pub(crate) fn wait(self: &Arc<Self>, grace: Duration) -> Waiting {
         self.waiting.fetch_add(1, Ordering::AcqRel);
-        Waiting(Arc::clone(self))
+        Waiting {
+            desk: Arc::clone(self),
+            grace,
+        }
     }
 
     fn is_abandoned(&self) -> bool {
@@ -62,21 +62,25 @@ impl Desk {
 }
 
 /// Somebody who waits.
-pub(crate) struct Waiting(Arc<Desk>);
+pub(crate) struct Waiting {
+    desk: Arc<Desk>,
+    grace: Duration,
+}
 
 impl Drop for Waiting {
     /// Ends what nobody waits for, after a while.
     fn drop(&mut self) {
-        self.0.waiting.fetch_sub(1, Ordering::AcqRel);
-        if !self.0.is_abandoned() || !self.0.is_at_work() {
+        self.desk.waiting.fetch_sub(1, Ordering::AcqRel);
+        if !self.desk.is_abandoned() || !self.desk.is_at_work() {
             return;
         }
         let Ok(runtime) = tokio::runtime::Handle::try_current() else {
             return;
         };
-        let (desk, stop) = (Arc::clone(&self.0), self.0.stop().clone());
+        let (desk, grace) = (Arc::clone(&self.desk), self.grace);
+        let stop = desk.stop().clone();
         runtime.spawn(async move {
-            tokio::time::sleep(GRACE).await;
+            tokio::time::sleep(grace).await;
             // Other work may have begun since: that has a stop of its own.
             if desk.is_abandoned() {
                 stop.set();
@@ -134,5 +138,69 @@ impl Desks {
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHORT: Duration = Duration::from_millis(30);
+    const LONG: Duration = Duration::from_secs(600);
+
+    async fn ends(stop: &Stop) -> bool {
+        for _ in 0..200 {
+            if stop.is_set() {
+                return true;
+            }
+            tokio::time::sleep(SHORT / 3).await;
+        }
+        false
+    }
+
+    #[tokio::test]
+    async fn work_ends_once_nobody_has_waited_for_a_while() {
+        let desk = Arc::new(Desk::default());
+        let at_work = desk.session().lock_owned().await;
+        let stop = desk.begin();
+        let (first, second) = (desk.wait(SHORT), desk.wait(SHORT));
+        drop(first);
+        tokio::time::sleep(2 * SHORT).await;
+        assert!(!stop.is_set(), "somebody waits still");
+        drop(second);
+        assert!(ends(&stop).await);
+        drop(at_work);
+    }
+
+    #[tokio::test]
+    async fn whoever_comes_back_in_time_finds_it_going_on() {
+        let desk = Arc::new(Desk::default());
+        let _at_work = desk.session().lock_owned().await;
+        let stop = desk.begin();
+        drop(desk.wait(SHORT));
+        let _back = desk.wait(LONG);
+        tokio::time::sleep(3 * SHORT).await;
+        assert!(!stop.is_set());
+    }
+
+    #[tokio::test]
+    async fn all_work_ends_with_the_server() {
+        let desks = Desks::default();
+        let desk = desks.of(SessionId::random().unwrap());
+        let stop = desk.begin();
+        desks.end();
+        assert!(stop.is_set());
+    }
+
+    #[tokio::test]
+    async fn a_desk_at_which_somebody_is_stays() {
+        let desks = Desks::default();
+        let id = SessionId::random().unwrap();
+        let busy = desks.of(id);
+        for _ in 0..2 * KEPT {
+            desks.of(SessionId::random().unwrap());
+        }
+        assert!(Arc::ptr_eq(&busy, &desks.of(id)));
+        assert!(desks.len() <= KEPT + 1);
     }
 }

@@ -1,18 +1,20 @@
 //! What can go wrong with a request: one type, shown as JSON by the API and as
 //! a page by the pages.
 
+use std::io;
 use std::time::Duration;
 
 use axum::Json;
 use axum::http::header::{RETRY_AFTER, WWW_AUTHENTICATE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::observe;
 use super::upload::{RECORDINGS, UPLOAD_LIMIT};
 use super::views;
 use crate::session::{Corrupt, Malformed, Refusal};
+use crate::store::StoreError;
 
 /// Why a request was not granted. The cause of an internal error is logged and
 /// not sent.
@@ -54,6 +56,10 @@ pub(crate) enum WebError {
     TooLargeToShow(String),
     /// The learner is still at work.
     Slow,
+    /// There is no room for what was to be kept.
+    Full(String),
+    /// The store is elsewhere, and does not answer.
+    Away(String),
     /// The session's log cannot be read.
     Corrupt(Corrupt),
     /// Something that should not happen.
@@ -61,8 +67,22 @@ pub(crate) enum WebError {
 }
 
 impl WebError {
+    /// Something that should not happen; but what the store and the disk say of
+    /// themselves is told for what it is.
     pub(crate) fn internal(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
-        Self::Internal(error.into())
+        let error = error.into();
+        match error.downcast_ref::<StoreError>() {
+            Some(StoreError::Full { message }) => return Self::Full(message.clone()),
+            Some(StoreError::Away { message }) => return Self::Away(message.clone()),
+            Some(StoreError::Unread { error, .. }) if has_no_room(error) => {
+                return Self::Full(error.to_string());
+            }
+            _ => {}
+        }
+        match error.downcast_ref::<io::Error>() {
+            Some(met) if has_no_room(met) => Self::Full(met.to_string()),
+            _ => Self::Internal(error),
+        }
     }
 
     /// Whether the session is as it was.
@@ -99,7 +119,8 @@ impl WebError {
             Self::Foreign | Self::NoPassword => StatusCode::FORBIDDEN,
             Self::SignIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
             Self::TooMany(_) => StatusCode::TOO_MANY_REQUESTS,
-            Self::Slow => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Slow | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Full(_) => StatusCode::INSUFFICIENT_STORAGE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -143,6 +164,8 @@ impl WebError {
             Self::NotAnAutomaton => "not_an_automaton",
             Self::TooLargeToShow(_) => "automaton_too_large",
             Self::Slow => "still_thinking",
+            Self::Full(_) => "disk_full",
+            Self::Away(_) => "store_unreachable",
             Self::Corrupt(_) => "log_unreadable",
             Self::Internal(_) => "internal",
         }
@@ -212,6 +235,14 @@ impl WebError {
                 "The next question is still being worked out: many rules fit what was said, and they are compared. Your answers are kept: ask again in a moment."
                     .to_owned()
             }
+            Self::Full(_) => {
+                "The disk on which the answers are kept is full, so that what you just sent was not kept. Free space on it, then send it again: it will count once. What was kept before is safe."
+                    .to_owned()
+            }
+            Self::Away(_) => {
+                "The database in which the answers are kept cannot be reached, so that what you just sent may not have been kept. Send it again in a moment: it will count once. What was kept before is safe."
+                    .to_owned()
+            }
             Self::Corrupt(corrupt) => sentence(&format!(
                 "{corrupt}; nothing was changed, use the memrep that wrote this session"
             )),
@@ -231,6 +262,8 @@ impl WebError {
     fn log(&self) {
         match self {
             Self::Internal(cause) => tracing::error!(%cause, "request failed"),
+            Self::Full(cause) => tracing::error!(%cause, "no room to keep what was sent"),
+            Self::Away(cause) => tracing::error!(%cause, "the store cannot be reached"),
             Self::Corrupt(cause) => tracing::error!(%cause, "log unreadable"),
             Self::Slow => tracing::warn!("a question takes long"),
             _ => {}
@@ -241,6 +274,12 @@ impl WebError {
 /// The seconds to wait, as a header has them.
 fn whole_seconds(wait: Duration) -> u64 {
     wait.as_secs() + u64::from(wait.subsec_nanos() > 0)
+}
+
+/// Whether a file could not grow.
+fn has_no_room(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }
 
 /// The same with a capital letter and a full stop.
@@ -286,8 +325,13 @@ impl From<Malformed> for WebError {
     }
 }
 
-impl IntoResponse for ApiError {
-    fn into_response(self) -> Response {
+impl ApiError {
+    /// The error with what was learned beside it, under this key.
+    pub(crate) fn beside(self, key: &str, value: &Value) -> Response {
+        self.respond(json!({ key: value }))
+    }
+
+    fn respond(self, mut body: Value) -> Response {
         self.0.log();
         let mut error = json!({"code": self.0.code(), "message": self.0.message()});
         if let Some(field) = self.0.field() {
@@ -296,11 +340,15 @@ impl IntoResponse for ApiError {
         if let Some(id) = self.0.told_by() {
             error["request"] = id.into();
         }
-        let mut response = (self.0.status(), Json(json!({ "error": error }))).into_response();
+        body["error"] = error;
+        let mut response = (self.0.status(), Json(body)).into_response();
         let headers = response.headers_mut();
         match self.0 {
             WebError::Slow => {
                 headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
+            }
+            WebError::Away(_) => {
+                headers.insert(RETRY_AFTER, HeaderValue::from_static("2"));
             }
             WebError::TooMany(wait) => {
                 headers.insert(RETRY_AFTER, whole_seconds(wait).into());
@@ -311,6 +359,12 @@ impl IntoResponse for ApiError {
             _ => {}
         }
         response
+    }
+}
+
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        self.respond(json!({}))
     }
 }
 

@@ -10,7 +10,7 @@ use axum::{Json, Router};
 use serde_json::{Value, json};
 
 use super::AppState;
-use super::api::{Answer, Body, describe_question, read_body, session_id};
+use super::api::{Answer, Body, read_body, session_id};
 use super::error::{ApiError, WebError};
 use super::forms;
 use super::invited::{Guest, another, say};
@@ -118,9 +118,9 @@ async fn turn(app: &AppState, guest: Guest) -> Answer {
     let view = move |session: &Session, position: &Position| {
         let turn = viewing.turn(guest.session, session, guest.person);
         match turn {
-            Some(Turn::Answer(number)) => describe_question(session, number),
+            Some(Turn::Answer(number)) => session.describe_question(number),
             Some(Turn::Repeat(number)) => {
-                let mut value = describe_question(session, number);
+                let mut value = session.describe_question(number);
                 value["repeated"] = true.into();
                 value
             }

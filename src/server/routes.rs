@@ -45,6 +45,7 @@ pub const ROUTES: &[Route] = &[
     route(READ, "/healthz", May::Anyone),
     // Tells only whoever sits at this machine.
     route(READ, "/metrics", May::Anyone),
+    route(READ, "/api/v1/openapi.json", May::Anyone),
     route(BOTH, "/sign-in", May::Anyone),
     route(WRITE, "/sign-out", May::Anyone),
     route(WRITE, "/api/v1/sign-in", May::Anyone),

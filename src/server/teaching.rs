@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tokio::sync::Semaphore;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::ahead::{Foresight, Trial};
 use super::busy::Busy;
@@ -22,6 +22,10 @@ use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, Store
 /// follows it take twice as long. The learner goes on after that, and a later page
 /// shows what came of it.
 const SOON: Duration = Duration::from_millis(800);
+
+/// So long after the last who waited has gone, a session thinks on: a page that waits
+/// asks every other second.
+const GRACE: Duration = Duration::from_secs(10);
 
 /// How long a script waits: it would only ask again.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -58,6 +62,9 @@ impl Teaching {
         metrics: Arc<Metrics>,
     ) -> Self {
         let pools = Pools::default();
+        let live: Arc<Live> = Arc::default();
+        let told = Arc::clone(&live);
+        store.follow(Box::new(move |id, entries| told.tell(id, entries)));
         Self {
             archive: Arc::new(Archive {
                 store,
@@ -68,7 +75,7 @@ impl Teaching {
             permits: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
-            live: Arc::default(),
+            live,
             leases: Arc::new(Leases::new(lease)),
             over: Stop::default(),
             patience: SOON,
@@ -229,7 +236,7 @@ impl Teaching {
     ) -> Result<T, WebError> {
         let here = self.clone();
         let desk = self.desks.of(id);
-        let _waiting = desk.wait();
+        let _waiting = desk.wait(GRACE);
         let work = async move {
             let wait = here.archive.metrics.wait();
             let mut held = desk.session().lock_owned().await;
@@ -243,14 +250,23 @@ impl Teaching {
             // The guard and the permit go along: they are free again when the
             // work is done, even if nobody waits for it any more.
             tokio::task::spawn_blocking(move || {
-                let (_permit, _turn) = (permit, turn);
+                let (mut permit, _turn) = (Some(permit), turn);
                 let begun = Instant::now();
                 let (archive, foresight) = (&here.archive, &here.foresight);
                 let mut session = match held.take() {
+                    Some(session) if archive.store.is_shared() => catch_up(archive, &id, session)?,
                     Some(session) => session,
                     None => load(archive, &id)?,
                 };
-                match advance(archive, &id, &mut session, decide, foresight, &stop) {
+                match advance(
+                    archive,
+                    &id,
+                    &mut session,
+                    decide,
+                    foresight,
+                    &stop,
+                    &mut permit,
+                ) {
                     Ok(position) => {
                         here.live.tell(id, session.entries());
                         let shown = view(&session, &position);
@@ -319,20 +335,10 @@ impl Teaching {
 }
 
 fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
-    let entries = archive.store.read(id).map_err(WebError::internal)?;
-    if entries.is_empty() {
+    let events = events(archive, id, 0)?;
+    if events.is_empty() {
         return Err(WebError::NoSession);
     }
-    let events = entries
-        .iter()
-        .map(|entry| {
-            serde_json::from_str(&entry.body).map_err(|error| Corrupt {
-                entry: entry.seq,
-                message: error.to_string(),
-            })
-        })
-        .collect::<Result<Vec<Event>, _>>()
-        .map_err(WebError::Corrupt)?;
     let world = match events.first() {
         Some(Event::Created { task, .. }) => archive.pools.world(&*archive.store, task),
         _ => Ok(None),
@@ -345,8 +351,33 @@ fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
     Session::replay_in(world, &events).map_err(WebError::Corrupt)
 }
 
+/// The session with what other servers wrote since it was last here.
+fn catch_up(archive: &Archive, id: &SessionId, mut session: Session) -> Result<Session, WebError> {
+    for event in events(archive, id, session.entries())? {
+        session.apply(&event).map_err(WebError::Corrupt)?;
+    }
+    Ok(session)
+}
+
+/// A session's log from this entry on.
+fn events(archive: &Archive, id: &SessionId, from: u64) -> Result<Vec<Event>, WebError> {
+    let entries = match from {
+        0 => archive.store.read(id),
+        _ => archive.store.read_from(id, from),
+    };
+    let entries = entries.map_err(WebError::internal)?;
+    let events = entries.iter().map(|entry| {
+        serde_json::from_str(&entry.body).map_err(|error| Corrupt {
+            entry: entry.seq,
+            message: error.to_string(),
+        })
+    });
+    let events: Result<Vec<Event>, Corrupt> = events.collect();
+    events.map_err(WebError::Corrupt)
+}
+
 /// Decides, appends and thinks; where that led. What was decided is kept even where
-/// thinking was stopped.
+/// thinking was stopped; the permit to think is given back once that is done.
 fn advance(
     archive: &Archive,
     id: &SessionId,
@@ -354,13 +385,17 @@ fn advance(
     decide: impl Fn(&Session) -> Result<Decision, WebError>,
     foresight: &Foresight,
     stop: &Stop,
+    permit: &mut Option<OwnedSemaphorePermit>,
 ) -> Result<Position, WebError> {
     loop {
         let clock = Clock::start();
         let already = match decide(session)? {
             Decision::Append(event) => {
                 let appended = match foresight.take(*id, session, &event) {
-                    Some(trial) => adopt(archive, id, session, trial)?,
+                    Some(trial) => {
+                        drop(permit.take());
+                        adopt(archive, id, session, trial)?
+                    }
                     None => append(archive, id, session, &event)?,
                 };
                 if !appended {
@@ -370,13 +405,17 @@ fn advance(
             }
             Decision::Already(position) => Some(position),
         };
+        let mut thought = already.is_none();
         while let Some(event) = session.think_until(stop) {
+            // What is left is to wait for the disk: others may think meanwhile.
+            drop(permit.take());
             append(archive, id, session, &event)?;
+            thought = true;
         }
         if stop.is_set() && *session.position() == Position::Thinking {
             return Err(WebError::Slow);
         }
-        if already.is_none() {
+        if thought {
             archive.metrics.chosen(&clock);
         }
         return Ok(match already {

@@ -5,7 +5,7 @@ use super::panel::Opinion;
 use super::{Asked, Position, Session, Standing, pupil};
 use crate::evidence::AnswerId;
 use crate::learner::Reply;
-use crate::task::Atom;
+use crate::task::{Atom, MAX_STATES};
 
 impl Session {
     pub(super) fn fold(&mut self, event: &Event) -> Result<(), String> {
@@ -50,6 +50,11 @@ impl Session {
                 self.replace(*number, reply)
             }
             Event::Enlarged { max_states } => {
+                if !(1..=MAX_STATES).contains(max_states) {
+                    return Err(format!(
+                        "a bound of {max_states} states is beyond all bounds"
+                    ));
+                }
                 self.task.max_states = *max_states;
                 self.rebuild()?;
                 self.leave();

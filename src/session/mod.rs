@@ -11,6 +11,7 @@
 mod agreement;
 mod config;
 mod decide;
+mod describe;
 mod event;
 mod explain;
 mod fold;

@@ -107,6 +107,12 @@ pub(super) fn check_header(
     Ok(())
 }
 
+/// The version of a database of ours that is to be brought up to date.
+pub(super) fn earlier_version(connection: &Connection) -> rusqlite::Result<Option<i64>> {
+    let version = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    Ok((1..VERSION).contains(&version).then_some(version))
+}
+
 /// Makes the tables, or brings those of an earlier version to this one: all of it,
 /// or nothing.
 pub(super) fn bring_up_to_date(connection: &mut Connection) -> rusqlite::Result<()> {

@@ -4,18 +4,25 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use rusqlite::ffi::{SQLITE_IOERR_SHMSIZE, SQLITE_IOERR_WRITE};
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionBehavior, params};
 
-use super::schema::{bring_up_to_date, check_header};
+use super::schema::{bring_up_to_date, check_header, earlier_version};
+use super::together::Together;
 use super::{
     Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, Visits,
-    files,
+    backup, files,
 };
+
+/// The most bytes of the write-ahead log that stay on the disk once it is written
+/// into the database.
+const LOG_LIMIT: i64 = 16 << 20;
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.
 pub struct Sqlite {
     connection: Mutex<Connection>,
+    together: Together,
 }
 
 impl Sqlite {
@@ -57,6 +64,9 @@ impl Sqlite {
             .busy_timeout(Duration::from_secs(5))
             .map_err(unusable)?;
         check_header(&connection, &shown, unusable)?;
+        if let Some(version) = earlier_version(&connection).map_err(unusable)? {
+            backup::before_upgrade(&connection, path, version)?;
+        }
         prepare(connection).map_err(unusable)
     }
 
@@ -67,6 +77,20 @@ impl Sqlite {
     /// If the database fails.
     pub fn in_memory() -> Result<Self, StoreError> {
         Ok(prepare(Connection::open_in_memory()?)?)
+    }
+
+    /// Lets the database grow to so many bytes and no further.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    pub fn limit(&self, bytes: u64) -> Result<(), StoreError> {
+        let connection = self.connection();
+        let page = |row: &rusqlite::Row<'_>| row.get(0);
+        let size: i64 = connection.query_row("PRAGMA page_size", [], page)?;
+        let pages = i64::try_from(bytes).unwrap_or(i64::MAX) / size.max(1);
+        connection.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
+        Ok(())
     }
 
     /// A panic elsewhere cannot have left a transaction open: they roll back.
@@ -81,48 +105,33 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", "ON")?;
+    // After an upload the log gives its room back.
+    connection.pragma_update(None, "journal_size_limit", LOG_LIMIT)?;
     bring_up_to_date(&mut connection)?;
     Ok(Sqlite {
         connection: Mutex::new(connection),
+        together: Together::default(),
     })
 }
 
 impl Store for Sqlite {
     fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
-        let mut connection = self.connection();
-        let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-        let id = session.to_string();
-        let last: Option<i64> = transaction
-            .prepare_cached("SELECT max(seq) FROM entries WHERE session = ?1")?
-            .query_row([&id], |row| row.get(0))?;
-        let expected = last.map_or(0, |last| last.cast_unsigned() + 1);
-        if seq < expected {
-            return Err(StoreError::Taken {
-                session: *session,
-                seq,
-            });
-        }
-        if seq > expected {
-            return Err(StoreError::Gap {
-                session: *session,
-                seq,
-            });
-        }
-        if seq == 0 {
-            transaction.execute("INSERT INTO sessions (id) VALUES (?1)", [&id])?;
-        }
-        transaction
-            .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
-            .execute(params![id, seq.cast_signed(), body])?;
-        transaction.commit()?;
-        Ok(())
+        let connect = || self.connection();
+        self.together.append(*session, seq, body, connect)
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        self.read_from(session, 0)
+    }
+
+    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {
         let connection = self.connection();
-        let mut statement = connection
-            .prepare_cached("SELECT seq, at, body FROM entries WHERE session = ?1 ORDER BY seq")?;
-        let entries = statement.query_map([session.to_string()], |row| entry(row, 0))?;
+        let mut statement = connection.prepare_cached(
+            "SELECT seq, at, body FROM entries WHERE session = ?1 AND seq >= ?2 ORDER BY seq",
+        )?;
+        let from = i64::try_from(seq).unwrap_or(i64::MAX);
+        let entries =
+            statement.query_map(params![session.to_string(), from], |row| entry(row, 0))?;
         Ok(entries.collect::<rusqlite::Result<_>>()?)
     }
 
@@ -245,9 +254,18 @@ impl Store for Sqlite {
 
     fn rest(&self) -> Result<(), StoreError> {
         let connection = self.connection();
+        connection.execute_batch("PRAGMA optimize")?;
         connection.pragma_update(None, "wal_checkpoint", "TRUNCATE")?;
         Ok(())
     }
+}
+
+/// Whether what failed is that the file could not grow.
+pub(super) fn is_full(error: &rusqlite::Error) -> bool {
+    // A quota or a limit of size is met as a failed write.
+    let met = error.sqlite_error().map(|error| error.extended_code);
+    error.sqlite_error_code() == Some(ErrorCode::DiskFull)
+        || matches!(met, Some(SQLITE_IOERR_WRITE | SQLITE_IOERR_SHMSIZE))
 }
 
 fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {

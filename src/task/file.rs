@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use automata::format::locate;
+
 use super::places::{self, Place, Places};
 use super::situation::Files;
 use super::universe::{Concept, Universe};
@@ -146,26 +148,22 @@ fn from_toml(text: &str, folder: &Path) -> Result<TaskFile, Vec<Fault>> {
 
 fn read_toml(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
     let (value, places) = parsed(text).map_err(|fault| vec![fault])?;
-    read(&value, files).map_err(|faults| in_order(faults, &places, text))
+    read(&value, files).map_err(|faults| in_order(faults, |path| places.find(path, text)))
 }
 
 fn from_json(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
     let value = serde_json::from_str(text).map_err(|error| {
+        // An empty text has neither.
         let place = Place {
-            line: error.line(),
-            column: error.column(),
+            line: error.line().max(1),
+            column: error.column().max(1),
         };
         let message = format!("this is not JSON: {error}");
         vec![placed(place, Malformed::new("", message))]
     })?;
     read(&value, files).map_err(|faults| {
-        let unplaced = |Malformed { path, message }| Fault {
-            line: None,
-            column: None,
-            path,
-            message,
-        };
-        faults.into_iter().map(unplaced).collect()
+        let place = |path: &str| Place::of(text, locate(text, path));
+        in_order(faults, place)
     })
 }
 
@@ -188,8 +186,8 @@ fn placed(place: Place, Malformed { path, message }: Malformed) -> Fault {
     }
 }
 
-fn in_order(faults: Vec<Malformed>, places: &Places, text: &str) -> Vec<Fault> {
-    let place = |fault: Malformed| (places.find(&fault.path, text), fault);
+fn in_order(faults: Vec<Malformed>, place_of: impl Fn(&str) -> Place) -> Vec<Fault> {
+    let place = |fault: Malformed| (place_of(&fault.path), fault);
     let mut faults: Vec<_> = faults.into_iter().map(place).collect();
     faults.sort_by_key(|(place, _)| *place);
     let placed = faults

@@ -16,5 +16,6 @@ mod order;
 mod outlook;
 mod refusals;
 mod robust;
+mod stopped;
 mod teacher;
 mod tomita;

@@ -58,12 +58,12 @@ async fn faulty_recordings_are_named() {
         (
             plain().recordings(&(two() + &line("x", &[]))),
             "recordings",
-            "line 3, `id`: `x` is the name of line 1",
+            "line 3, column 7, `id`: `x` is the name of line 1",
         ),
         (
             plain().recordings(&line("x", &["0", "1", "0", "2"])),
             "recordings",
-            "line 1, `word[3]`: expected a symbol",
+            ", `word[3]`: expected a symbol",
         ),
         (
             plain().recordings("\n"),
@@ -73,7 +73,7 @@ async fn faulty_recordings_are_named() {
         (
             plain().recordings(&frames("b.bmp")),
             "recordings",
-            "line 1, `media.paths[1]`: `b.bmp` is no picture",
+            ", `media.paths[1]`: `b.bmp` is no picture",
         ),
         (
             plain().recordings(&frames("../b.png")),
@@ -286,7 +286,7 @@ async fn a_task_that_does_not_fit_an_upload_is_refused() {
         (
             json!({"symbols": ["0"], "world": world}),
             "task.world.upload",
-            "line 2, `word[0]`",
+            ", `word[0]`",
         ),
         (
             json!({"symbols": ["0", "1"], "world": world, "examples": [{"word": [], "label": true}]}),

@@ -149,15 +149,15 @@ fn the_first_broken_line_is_named_with_its_field() {
     };
     check(
         r#"{"id":"x","word":["a","c"]}"#,
-        "line 3, `word[1]`: expected a symbol of the alphabet {a, b}, found \"c\"",
+        "line 3, column 23, `word[1]`: expected a symbol of the alphabet {a, b}, found \"c\"",
     );
     check(
         r#"{"id":"good","word":["a"]}"#,
-        "line 3, `id`: `good` is the name of line 1 already: give every recording its own",
+        "line 3, column 7, `id`: `good` is the name of line 1 already: give every recording its own",
     );
     check(
         r#"{"id":"","word":["a"]}"#,
-        "line 3, `id`: the name has 0 bytes: give 1 to 200",
+        "line 3, column 7, `id`: the name has 0 bytes: give 1 to 200",
     );
     check(
         r#"{"id":"x","word":["a"}"#,
@@ -169,7 +169,7 @@ fn the_first_broken_line_is_named_with_its_field() {
     );
     check(
         r#"["x",["a"]]"#,
-        r#"line 3: expected an object like {"id":"run-1","word":["a","b"],"complete":true}"#,
+        r#"line 3, column 1: expected an object like {"id":"run-1","word":["a","b"],"complete":true}"#,
     );
     let media = |media: &str, expected: &str| {
         let line = format!(r#"{{"id":"x","word":[],"media":{media}}}"#);
@@ -177,19 +177,19 @@ fn the_first_broken_line_is_named_with_its_field() {
     };
     media(
         r#"{"kind":"video","path":"x.png"}"#,
-        "line 3, `media.path`: `x.png` is no video that a browser shows: give a file that ends in .mp4, .webm",
+        "line 3, column 52, `media.path`: `x.png` is no video that a browser shows: give a file that ends in .mp4, .webm",
     );
     media(
         r#"{"kind":"frames","paths":["a.png","b.svg"]}"#,
-        "line 3, `media.paths[1]`: `b.svg` is no picture that a browser shows: give a file that ends in .png, .jpg, .jpeg, .webp",
+        "line 3, column 63, `media.paths[1]`: `b.svg` is no picture that a browser shows: give a file that ends in .png, .jpg, .jpeg, .webp",
     );
     media(
         r#"{"kind":"cells","cells":[[3,1],[3,500]]}"#,
-        "line 3, `media.cells`: the cells lie in 1 rows and 500 columns: at most 200 of each can be drawn",
+        "line 3, column 53, `media.cells`: the cells lie in 1 rows and 500 columns: at most 200 of each can be drawn",
     );
     media(
         r#"{"kind":"frames","paths":[]}"#,
-        "line 3, `media.paths`: it has 0 entries: give 1 to 1001",
+        "line 3, column 54, `media.paths`: it has 0 entries: give 1 to 1001",
     );
     for path in [
         "../x.gif",
@@ -202,7 +202,10 @@ fn the_first_broken_line_is_named_with_its_field() {
         let line =
             format!(r#"{{"id":"x","word":[],"media":{{"kind":"animation","path":"{path}"}}}}"#);
         let error = read(&symbols, &line).unwrap_err();
-        assert!(error.starts_with("line 1, `media.path`: "), "{error}");
+        assert!(
+            error.starts_with("line 1, column 56, `media.path`: "),
+            "{error}"
+        );
         assert!(error.contains("is no path within the upload"), "{error}");
     }
     let error = read(
@@ -211,11 +214,14 @@ fn the_first_broken_line_is_named_with_its_field() {
     );
     let error = error.unwrap_err();
     assert!(
-        error.starts_with("line 1, `media`: unknown variant `song`"),
+        error.starts_with("line 1, column 29, `media`: unknown variant `song`"),
         "{error}"
     );
     let error = read(&symbols, "\n\n").unwrap_err();
-    assert!(error.starts_with("there is no recording"), "{error}");
+    assert_eq!(
+        error,
+        "line 1, column 1: there is no recording: give at least one line like {\"id\":\"run-1\",\"word\":[\"a\",\"b\"],\"complete\":true}"
+    );
 }
 
 #[test]

@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::io::Read;
 
+use automata::format::locate;
 use automata::{Alphabet, Symbol, Word};
 use serde::Deserialize;
 use serde_json::Value;
@@ -33,9 +34,9 @@ const EXAMPLE: &str = r#"{"id":"run-1","word":["a","b"],"complete":true}"#;
 /// Why there is no pool: where in the file, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PoolError {
-    /// The line, from 1; none where the file as a whole is wrong.
+    /// The line, from 1; none where the file cannot be read at all.
     pub line: Option<usize>,
-    /// The column in the line, in bytes from 1, where the line is no JSON.
+    /// The column in the line, in bytes from 1.
     pub column: Option<usize>,
     /// The path of the field: `word[3]`.
     pub field: Option<String>,
@@ -174,7 +175,11 @@ impl PoolReader {
         self.line(&line)?;
         if self.recordings.is_empty() {
             let message = format!("there is no recording: give at least one line like {EXAMPLE}");
-            return Err(PoolError::whole(message));
+            return Err(PoolError {
+                line: Some(1),
+                column: Some(1),
+                ..PoolError::whole(message)
+            });
         }
         Ok(Pool::new(self.alphabet, self.recordings))
     }
@@ -184,6 +189,7 @@ impl PoolReader {
         if self.rest.len() + part.len() > LONGEST_LINE {
             return Err(PoolError {
                 line: Some(self.line + 1),
+                column: Some(LONGEST_LINE + 1),
                 ..PoolError::whole(format!(
                     "the line is longer than {LONGEST_LINE} bytes: write one recording a line, and media as paths"
                 ))
@@ -195,12 +201,12 @@ impl PoolReader {
 
     fn line(&mut self, line: &[u8]) -> Result<(), PoolError> {
         self.line += 1;
-        let line = line.trim_ascii();
-        if line.is_empty() {
+        if line.trim_ascii().is_empty() {
             return Ok(());
         }
         let recording = self.recording(line).map_err(|error| PoolError {
             line: Some(self.line),
+            column: error.column.or_else(|| Some(column_of(line, &error))),
             ..error
         })?;
         self.recordings.push(recording);
@@ -208,7 +214,7 @@ impl PoolReader {
     }
 
     fn recording(&mut self, line: &[u8]) -> Result<Recording, PoolError> {
-        if line[0] != b'{' {
+        if line.trim_ascii_start().first() != Some(&b'{') {
             let message = format!("expected an object like {EXAMPLE}");
             return Err(PoolError::whole(message));
         }
@@ -265,6 +271,12 @@ impl PoolReader {
         });
         symbols.collect()
     }
+}
+
+/// Where in its line the field stands that is at fault.
+fn column_of(line: &[u8], error: &PoolError) -> usize {
+    let text = std::str::from_utf8(line).unwrap_or_default();
+    locate(text, error.field.as_deref().unwrap_or_default()) + 1
 }
 
 fn media(value: Value) -> Result<Media, PoolError> {

@@ -82,16 +82,17 @@ struct File {
 ///
 /// # Errors
 ///
-/// With line and column where the text is not JSON or not of the form, with the
-/// path of the field where a value makes no automaton.
+/// With line and column, and with the path of the field where a value makes no
+/// automaton.
 pub fn read(text: &str) -> Result<Document, ReadError> {
     // The version comes first: the keys of another one are not unknown, they
     // are another version's.
     let value: Value = serde_json::from_str(text).map_err(|e| ReadError::json(&e, HINT))?;
-    check_header(&value)?;
+    check_header(&value).map_err(|e| e.placed_in(text))?;
+    drop(value);
     // Read again from the text and not from the value, for the sake of places.
     let file: File = serde_json::from_str(text).map_err(|e| ReadError::json(&e, HINT))?;
-    Document::try_from(file)
+    Document::try_from(file).map_err(|e| e.placed_in(text))
 }
 
 /// Writes an automaton file: one line.

@@ -19,8 +19,11 @@ pub mod dot_people;
 pub mod hoa;
 pub mod json;
 pub mod jsonl;
+mod locate;
 
 use std::fmt;
+
+pub use locate::locate;
 
 /// Why a text is not of the format: where, what was expected, what was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,6 +85,17 @@ impl ReadError {
         self
     }
 
+    /// The same error, with the place of its field in this JSON text.
+    #[must_use]
+    pub(crate) fn placed_in(mut self, text: &str) -> Self {
+        if let (Some(path), None) = (&self.field, self.column) {
+            let (line, column) = locate::place(text, locate(text, path));
+            self.line = self.line.or(Some(line));
+            self.column = Some(column);
+        }
+        self
+    }
+
     /// The line, from 1, where the format has lines.
     pub fn line(&self) -> Option<usize> {
         self.line
@@ -107,11 +121,10 @@ impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(line) = self.line {
             write!(f, "line {line}")?;
-            match self.column {
-                Some(column) => write!(f, ", column {column}: ")?,
-                None if self.field.is_some() => f.write_str(", ")?,
-                None => f.write_str(": ")?,
+            if let Some(column) = self.column {
+                write!(f, ", column {column}")?;
             }
+            f.write_str(if self.field.is_some() { ", " } else { ": " })?;
         }
         if let Some(field) = &self.field {
             write!(f, "`{field}`: ")?;

@@ -20,15 +20,10 @@ const HINT: &str = r#"; a line is {"word":["a"],"label":true}, {"worse":["a"],"b
 ///
 /// # Errors
 ///
-/// With the line, and the column or the path of the field; or if there is no
-/// symbol at all.
+/// With line and column, and with the path of the field where a value makes no
+/// item; or if there is no symbol at all.
 pub fn read(text: &str) -> Result<Sample, ReadError> {
-    let file = File::parse(text)?;
-    let alphabet = match &file.declared {
-        Some((_, alphabet)) => alphabet.clone(),
-        None => file.shown_alphabet()?,
-    };
-    file.sample(alphabet)
+    read_file(text, File::alphabet).map_err(|error| placed(error, text))
 }
 
 /// Reads a sample over a known alphabet.
@@ -38,14 +33,29 @@ pub fn read(text: &str) -> Result<Sample, ReadError> {
 /// As [`read`], or if a word has another symbol, or the first line names
 /// another alphabet.
 pub fn read_over(text: &str, alphabet: &Alphabet) -> Result<Sample, ReadError> {
-    let file = File::parse(text)?;
-    match &file.declared {
+    let over = |file: &File| match &file.declared {
         Some((number, declared)) if declared != alphabet => {
             let message = format!("expected the alphabet {alphabet}, found {declared}");
             Err(ReadError::field("alphabet", message).on_line(*number))
         }
-        _ => file.sample(alphabet.clone()),
-    }
+        _ => Ok(alphabet.clone()),
+    };
+    read_file(text, over).map_err(|error| placed(error, text))
+}
+
+fn read_file(
+    text: &str,
+    alphabet_of: impl FnOnce(&File) -> Result<Alphabet, ReadError>,
+) -> Result<Sample, ReadError> {
+    let file = File::parse(text)?;
+    let alphabet = alphabet_of(&file)?;
+    file.sample(alphabet)
+}
+
+/// The error with the place of its field in its line.
+fn placed(error: ReadError, text: &str) -> ReadError {
+    let line = error.line().and_then(|number| text.lines().nth(number - 1));
+    error.placed_in(line.unwrap_or_default())
 }
 
 /// What a line says.
@@ -177,6 +187,14 @@ impl File {
             }
         }
         Ok(())
+    }
+
+    /// The one that the first line names, or else the one that is shown.
+    fn alphabet(&self) -> Result<Alphabet, ReadError> {
+        match &self.declared {
+            Some((_, alphabet)) => Ok(alphabet.clone()),
+            None => self.shown_alphabet(),
+        }
     }
 
     /// The symbols in the order in which they appear.

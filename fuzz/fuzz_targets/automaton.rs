@@ -1,0 +1,4 @@
+//! libFuzzer's door to [`memrep_fuzz`]'s target `automaton`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| memrep_fuzz::run("automaton", data));
