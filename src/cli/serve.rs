@@ -64,7 +64,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) metrics_addr: Option<SocketAddr>,
     /// An address under which people reach the server, as in
-    /// https://teach.example.org, where a proxy has the certificate; may be said
+    /// `https://teach.example.org`, where a proxy has the certificate; may be said
     /// several times.
     #[arg(long, value_name = "URL")]
     pub(super) origin: Vec<Origin>,

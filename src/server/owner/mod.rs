@@ -204,9 +204,10 @@ enum Stands {
 
 async fn stands(app: &AppState, headers: &HeaderMap) -> Result<Stands, WebError> {
     if !app.door.is_locked(app).await? {
-        return Ok(match app.door.reached.is_public {
-            true => Stands::Unlocked,
-            false => Stands::In,
+        return Ok(if app.door.reached.is_public {
+            Stands::Unlocked
+        } else {
+            Stands::In
         });
     }
     let owner = match owners_key(app, headers) {

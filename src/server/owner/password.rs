@@ -31,6 +31,8 @@ fn argon() -> Result<Argon2<'static>, BadPassword> {
     Ok(Argon2::new(Algorithm::Argon2id, Version::V0x13, params))
 }
 
+// By value, as `map_err` gives it.
+#[allow(clippy::needless_pass_by_value)]
 fn unhashed(cause: impl ToString) -> BadPassword {
     BadPassword::Unhashed(cause.to_string())
 }
