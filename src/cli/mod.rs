@@ -18,6 +18,8 @@ mod learn;
 #[cfg(feature = "server")]
 mod log;
 mod output;
+#[cfg(feature = "server")]
+mod password;
 mod replay;
 #[cfg(feature = "server")]
 mod restore;
@@ -55,6 +57,9 @@ enum Command {
     /// Tell the settings that `serve` would run with, and where each comes from.
     #[cfg(feature = "server")]
     Config(config::Args),
+    /// Set the owner's password, without which nobody else's machine is served.
+    #[cfg(feature = "server")]
+    Password(password::Args),
     /// Copy the database while a server writes to it.
     #[cfg(feature = "server")]
     Backup(backup::Args),
@@ -101,6 +106,8 @@ pub fn main() -> ExitCode {
         Some(Command::Restore(args)) => restore::run(&args),
         #[cfg(feature = "server")]
         Some(Command::Config(args)) => config::run(&args, flags),
+        #[cfg(feature = "server")]
+        Some(Command::Password(args)) => password::run(&args, flags),
         #[cfg(feature = "server")]
         Some(Command::Serve(_)) | None => serve::run(flags),
         #[cfg(not(feature = "server"))]

@@ -2,9 +2,10 @@
 //! a page by the pages.
 
 use std::io;
+use std::time::Duration;
 
 use axum::Json;
-use axum::http::header::RETRY_AFTER;
+use axum::http::header::{RETRY_AFTER, WWW_AUTHENTICATE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
@@ -39,6 +40,14 @@ pub(crate) enum WebError {
     UploadTooLarge,
     /// The request came from another site.
     Foreign,
+    /// Only the owner may have this.
+    SignIn,
+    /// It is not the owner's password.
+    WrongPassword,
+    /// Nobody can sign in, and others can reach the server.
+    NoPassword,
+    /// Too much was asked; in so long there may be more.
+    TooMany(Duration),
     /// No automaton is on show at the moment.
     NoAutomaton,
     /// The session learns no automaton.
@@ -107,7 +116,9 @@ impl WebError {
             | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
             Self::Unreadable(_) => StatusCode::BAD_REQUEST,
             Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
-            Self::Foreign => StatusCode::FORBIDDEN,
+            Self::Foreign | Self::NoPassword => StatusCode::FORBIDDEN,
+            Self::SignIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
+            Self::TooMany(_) => StatusCode::TOO_MANY_REQUESTS,
             Self::Slow | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
             Self::Full(_) => StatusCode::INSUFFICIENT_STORAGE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
@@ -145,6 +156,10 @@ impl WebError {
             Self::Unreadable(_) => "unreadable_body",
             Self::TooLarge | Self::UploadTooLarge => "body_too_large",
             Self::Foreign => "cross_site",
+            Self::SignIn => "sign_in",
+            Self::WrongPassword => "wrong_password",
+            Self::NoPassword => "no_password",
+            Self::TooMany(_) => "too_many_requests",
             Self::NoAutomaton => "no_automaton",
             Self::NotAnAutomaton => "not_an_automaton",
             Self::TooLargeToShow(_) => "automaton_too_large",
@@ -206,6 +221,10 @@ impl WebError {
                 "The request came from another site, so nothing was done: use this site's own pages."
                     .to_owned()
             }
+            Self::SignIn => "Only the owner of this server may have this: sign in, by `POST /api/v1/sign-in` with the password, and send the token as `Authorization: Bearer`.".to_owned(),
+            Self::WrongPassword => "That is not the password: try again.".to_owned(),
+            Self::NoPassword => "Other machines can reach this server, and it has no owner's password yet: set one with `memrep password`.".to_owned(),
+            Self::TooMany(wait) => format!("That was too much in a short time: try again in {} seconds.", whole_seconds(*wait)),
             Self::NoAutomaton => {
                 "No rule is on show at the moment: go on answering, or mend the answers that contradict each other, until one is.".to_owned()
             }
@@ -250,6 +269,11 @@ impl WebError {
             _ => {}
         }
     }
+}
+
+/// The seconds to wait, as a header has them.
+fn whole_seconds(wait: Duration) -> u64 {
+    wait.as_secs() + u64::from(wait.subsec_nanos() > 0)
 }
 
 /// Whether a file could not grow.
@@ -318,14 +342,21 @@ impl ApiError {
         }
         body["error"] = error;
         let mut response = (self.0.status(), Json(body)).into_response();
-        let again = match self.0 {
-            WebError::Slow => Some("1"),
-            WebError::Away(_) => Some("2"),
-            _ => None,
-        };
-        if let Some(again) = again {
-            let seconds = HeaderValue::from_static(again);
-            response.headers_mut().insert(RETRY_AFTER, seconds);
+        let headers = response.headers_mut();
+        match self.0 {
+            WebError::Slow => {
+                headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
+            }
+            WebError::Away(_) => {
+                headers.insert(RETRY_AFTER, HeaderValue::from_static("2"));
+            }
+            WebError::TooMany(wait) => {
+                headers.insert(RETRY_AFTER, whole_seconds(wait).into());
+            }
+            WebError::SignIn => {
+                headers.insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+            }
+            _ => {}
         }
         response
     }
@@ -340,6 +371,11 @@ impl IntoResponse for ApiError {
 impl IntoResponse for PageError {
     fn into_response(self) -> Response {
         self.0.log();
-        views::error_page(&self.0)
+        let mut response = views::error_page(&self.0);
+        if let WebError::TooMany(wait) = self.0 {
+            let wait = whole_seconds(wait).into();
+            response.headers_mut().insert(RETRY_AFTER, wait);
+        }
+        response
     }
 }

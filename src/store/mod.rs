@@ -12,6 +12,7 @@ mod postgres;
 mod schema;
 mod sqlite;
 mod together;
+mod visits;
 
 use std::io::Read;
 
@@ -21,6 +22,7 @@ pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadI
 #[cfg(feature = "postgres")]
 pub use postgres::Postgres;
 pub use sqlite::Sqlite;
+pub use visits::{NoVisitKey, Visit, VisitKey, Visitor, Visits};
 
 /// The bytes of a file lie in pieces of this size, the last one shorter.
 pub const CHUNK: usize = 256 * 1024;
@@ -262,6 +264,9 @@ pub trait Store: Send + Sync {
     ///
     /// If the database fails.
     fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError>;
+
+    /// Who is signed in, and the owner's password.
+    fn visits(&self) -> &dyn Visits;
 
     /// The upload that the session was created with, if it was with one.
     ///

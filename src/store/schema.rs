@@ -7,7 +7,7 @@ use super::StoreError;
 /// "MemR": says in the file's header whose it is.
 const APPLICATION: i64 = 0x4d65_6d52;
 /// The schema's version, in the file's header.
-const VERSION: i64 = 3;
+const VERSION: i64 = 4;
 
 /// What makes each version out of the one before, from version 1. A step that
 /// was released is never changed.
@@ -58,6 +58,21 @@ CREATE TABLE invites (
     at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
     PRIMARY KEY (session, person)
 ) STRICT, WITHOUT ROWID;
+",
+    // A visit names its invitation by the digest, which a new link replaces: with the
+    // old link end its visits. Times are seconds since 1970.
+    "
+CREATE TABLE owner (
+    only INTEGER PRIMARY KEY CHECK (only = 1),
+    password TEXT NOT NULL
+) STRICT;
+CREATE TABLE visits (
+    digest TEXT PRIMARY KEY,
+    invite TEXT,
+    begun INTEGER NOT NULL,
+    seen INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+CREATE INDEX visits_by_time ON visits (begun);
 ",
 ];
 

@@ -10,8 +10,8 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionB
 use super::schema::{bring_up_to_date, check_header, earlier_version};
 use super::together::Together;
 use super::{
-    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, backup,
-    files,
+    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, Visits,
+    backup, files,
 };
 
 /// The most bytes of the write-ahead log that stay on the disk once it is written
@@ -94,7 +94,7 @@ impl Sqlite {
     }
 
     /// A panic elsewhere cannot have left a transaction open: they roll back.
-    fn connection(&self) -> MutexGuard<'_, Connection> {
+    pub(super) fn connection(&self) -> MutexGuard<'_, Connection> {
         self.connection
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -220,6 +220,10 @@ impl Store for Sqlite {
                 Err(_) => Err(rusqlite::Error::InvalidColumnName(id).into()),
             })
             .transpose()
+    }
+
+    fn visits(&self) -> &dyn Visits {
+        self
     }
 
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {

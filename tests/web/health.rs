@@ -11,6 +11,7 @@ use axum::http::{Request, Response, StatusCode};
 use memrep::server::{AppState, app};
 use memrep::store::{
     Entry, InviteKey, Listed, NewFile, SessionId, Sqlite, Store, StoreError, StoredFile, UploadId,
+    Visit, Visits,
 };
 use serde_json::json;
 use tower::ServiceExt;
@@ -177,6 +178,30 @@ impl Ill {
     }
 }
 
+impl Visits for Ill {
+    fn password(&self) -> Result<Option<String>, StoreError> {
+        self.fails()
+    }
+    fn set_password(&self, _: Option<&str>) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn begin_visit(&self, _: &str, _: Option<&str>, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn visit(&self, _: &str) -> Result<Option<Visit>, StoreError> {
+        self.fails()
+    }
+    fn see_visit(&self, _: &str, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn end_visit(&self, _: &str) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn forget_visits(&self, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+}
+
 impl Store for Ill {
     fn append(&self, _: &SessionId, _: u64, _: &str) -> Result<(), StoreError> {
         self.fails()
@@ -202,6 +227,10 @@ impl Store for Ill {
     fn invited(&self, _: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError> {
         self.fails()
     }
+    fn visits(&self) -> &dyn Visits {
+        self
+    }
+
     fn upload_of(&self, _: &SessionId) -> Result<Option<UploadId>, StoreError> {
         self.fails()
     }

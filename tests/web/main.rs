@@ -8,6 +8,7 @@ mod classes;
 mod clicks;
 mod conflicts;
 mod desk;
+mod door;
 mod health;
 mod invariants;
 mod openapi;
@@ -15,6 +16,7 @@ mod pages;
 mod parts;
 mod people;
 mod random;
+mod routes;
 #[cfg(unix)]
 mod serve;
 mod site;

@@ -10,6 +10,7 @@ mod fault;
 mod files;
 mod news;
 mod schema;
+mod visits;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,6 +27,7 @@ use self::fault::{fault, is_worth_another_try, no_connection};
 use self::news::Ears;
 use super::{
     Entry, Hear, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId,
+    Visits,
 };
 
 /// How long anything but an upload may take before the database counts as away.
@@ -258,6 +260,10 @@ impl Store for Postgres {
         let rows = self.rows(sql, &[&key.digest()])?;
         let person = |row: &Row| Ok((name(row, 0)?, whole(row, 1) as u32));
         rows.first().map(person).transpose()
+    }
+
+    fn visits(&self) -> &dyn Visits {
+        self
     }
 
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {

@@ -8,14 +8,15 @@ use super::fault::{fault, told};
 use crate::store::StoreError;
 
 /// The schema's version; not that of the `SQLite` files.
-const VERSION: i64 = 1;
+const VERSION: i64 = 2;
 
 /// Held while tables are made, so that of several servers that start one does.
 const LOCK: i64 = 0x4d65_6d52;
 
 /// What makes each version out of the one before, from nothing. A step that was
 /// released is never changed.
-const STEPS: [&str; VERSION as usize] = ["
+const STEPS: [&str; VERSION as usize] = [
+    "
 CREATE TABLE uploads (
     id TEXT PRIMARY KEY,
     at TIMESTAMPTZ NOT NULL DEFAULT clock_timestamp()
@@ -59,7 +60,23 @@ CREATE TABLE invites (
     at TIMESTAMPTZ NOT NULL DEFAULT clock_timestamp(),
     PRIMARY KEY (session, person)
 );
-"];
+",
+    // A visit names its invitation by the digest, which a new link replaces: with the
+    // old link end its visits. Times are seconds since 1970.
+    "
+CREATE TABLE owner (
+    one BIGINT PRIMARY KEY CHECK (one = 1),
+    password TEXT NOT NULL
+);
+CREATE TABLE visits (
+    digest TEXT PRIMARY KEY,
+    invite TEXT,
+    begun BIGINT NOT NULL,
+    seen BIGINT NOT NULL
+);
+CREATE INDEX visits_by_time ON visits (begun);
+",
+];
 
 /// Makes the tables, or brings those of an earlier version to this one: all of it,
 /// or nothing.
