@@ -6,6 +6,9 @@ use serde_json::{Value, json};
 
 use crate::server::{Reply, Server, answer, answers_in, ask};
 
+/// After so many lives of the server a session is left for another.
+const MOST_LIVES: usize = 10;
+
 /// An answer that was sent, and what came back the first time that something did.
 struct Sent {
     answer: Value,
@@ -17,6 +20,8 @@ struct Sent {
 pub(crate) struct Taught {
     id: String,
     sent: Vec<Sent>,
+    /// How many lives of a server it has been through.
+    lives: usize,
 }
 
 /// One person, over all lives of the server.
@@ -45,6 +50,9 @@ impl Person {
             }
             self.repeated += 1;
         }
+        if let Some(session) = self.sessions.last_mut() {
+            session.lives += 1;
+        }
         while !enough.load(Ordering::Relaxed) {
             if self.step(address, task).is_none() {
                 return;
@@ -55,11 +63,12 @@ impl Person {
     /// One question and its answer, or a new session; none once the server is gone.
     fn step(&mut self, address: &str, task: &str) -> Option<()> {
         let question = match self.sessions.last() {
-            Some(session) => {
+            // A question that takes longer than the server lives is never put.
+            Some(session) if session.lives <= MOST_LIVES => {
                 let path = format!("/api/v1/sessions/{}/question", session.id);
                 ask(address, "GET", &path, &Value::Null)?.json()
             }
-            None => json!({"kind": "done"}),
+            _ => json!({"kind": "done"}),
         };
         let Some(answer) = answer(&question) else {
             // Quick questions mostly, so that much happens between two kills; now and
@@ -79,7 +88,7 @@ impl Person {
             let id = created.json()["id"].as_str().unwrap().to_owned();
             self.sessions.push(Taught {
                 id,
-                sent: Vec::new(),
+                ..Taught::default()
             });
             return Some(());
         };
