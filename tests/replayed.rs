@@ -2,6 +2,10 @@
 //! after a restart, and ask next what they had asked, byte for byte; and an answer
 //! that was taken back leaves no trace in what is asked.
 //!
+//! One thing is not promised: where the budget ended before the best question was
+//! found (`hurried`), a learner that thought before has come further with it than one
+//! that was just rebuilt, and may ask something else. Such questions are counted.
+//!
 //! `MEMREP_SESSIONS=1000` runs so many of them; `MEMREP_SESSION=17` that one alone.
 
 use std::collections::BTreeMap;
@@ -409,7 +413,11 @@ impl Life {
     /// A question beside others is the same from the log alone.
     fn check_further(&self, event: &Event) {
         let again = read(&self.log).further();
-        assert_eq!(again.as_ref(), Some(event));
+        let hurried = is_hurried(&serde_json::to_string(event).unwrap());
+        assert!(
+            hurried || again.as_ref() == Some(event),
+            "{again:?} and not {event:?}"
+        );
     }
 
     /// From the log alone, as after a restart: it stands where this one does; and
@@ -424,7 +432,12 @@ impl Life {
         let mut cut = read(before);
         if *cut.position() == Position::Thinking {
             let thought = cut.think().unwrap();
-            assert_eq!(serde_json::to_string(&thought).unwrap(), *last);
+            let text = serde_json::to_string(&thought).unwrap();
+            if text != *last && (is_hurried(&text) || is_hurried(last)) {
+                self.saw("hurried");
+                return;
+            }
+            assert_eq!(text, *last);
             cut.apply(&thought).unwrap();
             assert_eq!(next(&cut), next(&self.session));
             self.saw("rebuilt");
@@ -486,7 +499,12 @@ impl Life {
             }
             event.to_string()
         };
-        assert_eq!(content(last), content(thought));
+        let (last, thought) = (content(last), content(thought));
+        if last != thought && (is_hurried(&last) || is_hurried(&thought)) {
+            self.saw("hurried");
+            return;
+        }
+        assert_eq!(last, thought);
         self.saw("traceless");
     }
 
@@ -518,14 +536,17 @@ fn live(seed: u64) -> Seen {
         }
         if turn % 3 == 0 {
             life.check_rebuilt();
-        }
-        if turn % 5 == 4 {
             life.check_traceless();
         }
     }
     life.check_rebuilt();
     life.check_traceless();
     life.seen
+}
+
+/// Whether the budget ended before the best question was found.
+fn is_hurried(event: &str) -> bool {
+    event.contains("\"hurried\":true")
 }
 
 fn told(variable: &str) -> Option<u64> {
@@ -555,9 +576,15 @@ fn sessions_are_rebuilt_from_their_logs_and_forget_what_was_taken_back() {
             all
         });
     eprintln!("{seen:?}");
+    let hurried = seen.get("hurried").copied().unwrap_or_default();
     if alone {
         return;
     }
+    let compared = seen["rebuilt"] + seen["traceless"];
+    assert!(
+        hurried * 20 < compared,
+        "{hurried} of {compared} differ, hurried"
+    );
     for what in [
         "answered",
         "retracted",
