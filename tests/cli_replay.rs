@@ -263,11 +263,10 @@ fn recordings_are_named_beside_the_log() {
         "world": {"kind": "pool", "upload": "0123456789abcdef0123456789abcdef"},
     }))
     .unwrap();
-    let recordings: String = ["a", "b", "a\",\"b", "b\",\"a"]
-        .iter()
-        .enumerate()
-        .map(|(place, word)| format!("{{\"id\":\"{place}\",\"word\":[\"{word}\"]}}\n"))
-        .collect();
+    let words = ["a", "b", "a\",\"b", "b\",\"a"];
+    let lines = (words.iter().enumerate())
+        .map(|(place, word)| format!("{{\"id\":\"{place}\",\"word\":[\"{word}\"]}}\n"));
+    let recordings = lines.collect::<Vec<_>>().concat();
     let pool = PoolReader::read(task.alphabet().unwrap(), recordings.as_bytes()).unwrap();
     let mut events = vec![Session::created(task, Setup::default())];
     let world = Arc::new(World::Pool(pool));
