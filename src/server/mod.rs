@@ -7,6 +7,7 @@
 mod again;
 mod ahead;
 mod api;
+mod archive;
 mod assets;
 mod behaviour;
 mod budget;

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::ahead::{Foresight, Trial};
+use super::archive::Archive;
 use super::busy::Busy;
 use super::desks::Desks;
 use super::error::WebError;
@@ -15,8 +16,8 @@ use super::live::Live;
 use super::metrics::{Clock, Metrics};
 use super::upload::{Pools, Upload};
 use crate::evidence::Stop;
-use crate::session::{Corrupt, Decision, Event, Position, Session, Setup, Task};
-use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoreError, StoredFile};
+use crate::session::{Decision, Position, Session, Setup, Task};
+use crate::store::{Entry, InviteKey, Listed, SessionId, Store, StoredFile};
 
 /// How long a page waits for the learner before it says so; a form and the page that
 /// follows it take twice as long. The learner goes on after that, and a later page
@@ -29,13 +30,6 @@ const GRACE: Duration = Duration::from_secs(10);
 
 /// How long a script waits: it would only ask again.
 const PATIENCE: Duration = Duration::from_secs(30);
-
-/// Where sessions are read from: the store, and what is in memory of its uploads.
-struct Archive {
-    store: Arc<dyn Store>,
-    pools: Pools,
-    metrics: Arc<Metrics>,
-}
 
 /// All sessions of a store, and the pool on which they think.
 #[derive(Clone)]
@@ -252,26 +246,19 @@ impl Teaching {
             tokio::task::spawn_blocking(move || {
                 let (mut permit, _turn) = (Some(permit), turn);
                 let begun = Instant::now();
-                let (archive, foresight) = (&here.archive, &here.foresight);
+                let archive = &here.archive;
                 let mut session = match held.take() {
-                    Some(session) if archive.store.is_shared() => catch_up(archive, &id, session)?,
+                    Some(session) if archive.store.is_shared() => archive.catch_up(&id, session)?,
                     Some(session) => session,
-                    None => load(archive, &id)?,
+                    None => archive.load(&id)?,
                 };
-                match advance(
-                    archive,
-                    &id,
-                    &mut session,
-                    decide,
-                    foresight,
-                    &stop,
-                    &mut permit,
-                ) {
+                match here.advance(&id, &mut session, decide, &stop, &mut permit) {
                     Ok(position) => {
                         here.live.tell(id, session.entries());
                         let shown = view(&session, &position);
                         here.busy.note(begun.elapsed());
-                        foresight.prepare(id, &session, &here.permits, &here.busy);
+                        here.foresight
+                            .prepare(id, &session, &here.permits, &here.busy);
                         *held = Some(session);
                         Ok(shown)
                     }
@@ -332,148 +319,52 @@ impl Teaching {
             .await
             .map_err(WebError::internal)?
     }
-}
 
-fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
-    let events = events(archive, id, 0)?;
-    if events.is_empty() {
-        return Err(WebError::NoSession);
-    }
-    let world = match events.first() {
-        Some(Event::Created { task, .. }) => archive.pools.world(&*archive.store, task),
-        _ => Ok(None),
-    };
-    // Whoever asks for the session cannot have caused it.
-    let world = world.map_err(|error| match error {
-        WebError::Malformed(fault) => WebError::internal(fault),
-        other => other,
-    })?;
-    Session::replay_in(world, &events).map_err(WebError::Corrupt)
-}
-
-/// The session with what other servers wrote since it was last here.
-fn catch_up(archive: &Archive, id: &SessionId, mut session: Session) -> Result<Session, WebError> {
-    for event in events(archive, id, session.entries())? {
-        session.apply(&event).map_err(WebError::Corrupt)?;
-    }
-    Ok(session)
-}
-
-/// A session's log from this entry on.
-fn events(archive: &Archive, id: &SessionId, from: u64) -> Result<Vec<Event>, WebError> {
-    let entries = match from {
-        0 => archive.store.read(id),
-        _ => archive.store.read_from(id, from),
-    };
-    let entries = entries.map_err(WebError::internal)?;
-    let events = entries.iter().map(|entry| {
-        serde_json::from_str(&entry.body).map_err(|error| Corrupt {
-            entry: entry.seq,
-            message: error.to_string(),
-        })
-    });
-    let events: Result<Vec<Event>, Corrupt> = events.collect();
-    events.map_err(WebError::Corrupt)
-}
-
-/// Decides, appends and thinks; where that led. What was decided is kept even where
-/// thinking was stopped; the permit to think is given back once that is done.
-fn advance(
-    archive: &Archive,
-    id: &SessionId,
-    session: &mut Session,
-    decide: impl Fn(&Session) -> Result<Decision, WebError>,
-    foresight: &Foresight,
-    stop: &Stop,
-    permit: &mut Option<OwnedSemaphorePermit>,
-) -> Result<Position, WebError> {
-    loop {
-        let clock = Clock::start();
-        let already = match decide(session)? {
-            Decision::Append(event) => {
-                let appended = match foresight.take(*id, session, &event) {
-                    Some(trial) => {
-                        drop(permit.take());
-                        adopt(archive, id, session, trial)?
+    /// Decides, appends and thinks; where that led. What was decided is kept even where
+    /// thinking was stopped; the permit to think is given back once that is done.
+    fn advance(
+        &self,
+        id: &SessionId,
+        session: &mut Session,
+        decide: impl Fn(&Session) -> Result<Decision, WebError>,
+        stop: &Stop,
+        permit: &mut Option<OwnedSemaphorePermit>,
+    ) -> Result<Position, WebError> {
+        loop {
+            let clock = Clock::start();
+            let already = match decide(session)? {
+                Decision::Append(event) => {
+                    let appended = match self.foresight.take(*id, session, &event) {
+                        Some(trial) => {
+                            drop(permit.take());
+                            self.archive.adopt(id, session, trial)?
+                        }
+                        None => self.archive.append(id, session, &event)?,
+                    };
+                    if !appended {
+                        continue;
                     }
-                    None => append(archive, id, session, &event)?,
-                };
-                if !appended {
-                    continue;
+                    None
                 }
-                None
+                Decision::Already(position) => Some(position),
+            };
+            let mut thought = already.is_none();
+            while let Some(event) = session.think_until(stop) {
+                // What is left is to wait for the disk: others may think meanwhile.
+                drop(permit.take());
+                self.archive.append(id, session, &event)?;
+                thought = true;
             }
-            Decision::Already(position) => Some(position),
-        };
-        let mut thought = already.is_none();
-        while let Some(event) = session.think_until(stop) {
-            // What is left is to wait for the disk: others may think meanwhile.
-            drop(permit.take());
-            append(archive, id, session, &event)?;
-            thought = true;
+            if stop.is_set() && *session.position() == Position::Thinking {
+                return Err(WebError::Slow);
+            }
+            if thought {
+                self.archive.metrics.chosen(&clock);
+            }
+            return Ok(match already {
+                Some(position) if position != Position::Thinking => position,
+                _ => session.position().clone(),
+            });
         }
-        if stop.is_set() && *session.position() == Position::Thinking {
-            return Err(WebError::Slow);
-        }
-        if thought {
-            archive.metrics.chosen(&clock);
-        }
-        return Ok(match already {
-            Some(position) if position != Position::Thinking => position,
-            _ => session.position().clone(),
-        });
-    }
-}
-
-/// Appends the entries of a trial to the store, and goes on with its session; if
-/// another writer was faster with the first, reads the session again instead and
-/// says `false`.
-fn adopt(
-    archive: &Archive,
-    id: &SessionId,
-    session: &mut Session,
-    trial: Trial,
-) -> Result<bool, WebError> {
-    let causes = std::iter::once(&trial.cause);
-    let first = session.entries();
-    for (event, seq) in causes.chain(&trial.effects).zip(first..) {
-        if !keep(archive, id, seq, event)? {
-            *session = load(archive, id)?;
-            // After the first the answer is there, whoever wrote what follows.
-            return Ok(seq > first);
-        }
-    }
-    *session = trial.session;
-    Ok(true)
-}
-
-/// Appends an entry to the store, then to the session; if another writer was
-/// faster, reads the session again instead and says `false`.
-fn append(
-    archive: &Archive,
-    id: &SessionId,
-    session: &mut Session,
-    event: &Event,
-) -> Result<bool, WebError> {
-    if keep(archive, id, session.entries(), event)? {
-        session.apply(event).map_err(WebError::Corrupt)?;
-        Ok(true)
-    } else {
-        *session = load(archive, id)?;
-        Ok(false)
-    }
-}
-
-/// Appends an entry to the store; `false` if another writer was faster.
-fn keep(archive: &Archive, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
-    let body = serde_json::to_string(event).map_err(WebError::internal)?;
-    let begun = Instant::now();
-    match archive.store.append(id, seq, &body) {
-        Ok(()) => {
-            archive.metrics.appended(event, begun.elapsed());
-            Ok(true)
-        }
-        Err(StoreError::Taken { .. }) => Ok(false),
-        Err(error) => Err(WebError::internal(error)),
     }
 }

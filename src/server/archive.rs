@@ -1,0 +1,122 @@
+//! Where sessions come from and what becomes of them: their logs in the store, read
+//! from the beginning or from where they were left, and written entry by entry. Must
+//! not know who asks, nor think.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::ahead::Trial;
+use super::error::WebError;
+use super::metrics::Metrics;
+use super::upload::Pools;
+use crate::session::{Corrupt, Event, Session};
+use crate::store::{SessionId, Store, StoreError};
+
+/// The store, and what is in memory of its uploads.
+pub(crate) struct Archive {
+    pub(crate) store: Arc<dyn Store>,
+    pub(crate) pools: Pools,
+    pub(crate) metrics: Arc<Metrics>,
+}
+
+impl Archive {
+    /// The session as its whole log says.
+    pub(crate) fn load(&self, id: &SessionId) -> Result<Session, WebError> {
+        let events = self.events(id, 0)?;
+        if events.is_empty() {
+            return Err(WebError::NoSession);
+        }
+        let world = match events.first() {
+            Some(Event::Created { task, .. }) => self.pools.world(&*self.store, task),
+            _ => Ok(None),
+        };
+        // Whoever asks for the session cannot have caused it.
+        let world = world.map_err(|error| match error {
+            WebError::Malformed(fault) => WebError::internal(fault),
+            other => other,
+        })?;
+        Session::replay_in(world, &events).map_err(WebError::Corrupt)
+    }
+
+    /// The session with what other servers wrote since it was last here.
+    pub(crate) fn catch_up(
+        &self,
+        id: &SessionId,
+        mut session: Session,
+    ) -> Result<Session, WebError> {
+        for event in self.events(id, session.entries())? {
+            session.apply(&event).map_err(WebError::Corrupt)?;
+        }
+        Ok(session)
+    }
+
+    /// A session's log from this entry on.
+    fn events(&self, id: &SessionId, from: u64) -> Result<Vec<Event>, WebError> {
+        let entries = match from {
+            0 => self.store.read(id),
+            _ => self.store.read_from(id, from),
+        };
+        let entries = entries.map_err(WebError::internal)?;
+        let events = entries.iter().map(|entry| {
+            serde_json::from_str(&entry.body).map_err(|error| Corrupt {
+                entry: entry.seq,
+                message: error.to_string(),
+            })
+        });
+        let events: Result<Vec<Event>, Corrupt> = events.collect();
+        events.map_err(WebError::Corrupt)
+    }
+
+    /// Appends the entries of a trial to the store, and goes on with its session; if
+    /// another writer was faster with the first, reads the session again instead and
+    /// says `false`.
+    pub(crate) fn adopt(
+        &self,
+        id: &SessionId,
+        session: &mut Session,
+        trial: Trial,
+    ) -> Result<bool, WebError> {
+        let causes = std::iter::once(&trial.cause);
+        let first = session.entries();
+        for (event, seq) in causes.chain(&trial.effects).zip(first..) {
+            if !self.keep(id, seq, event)? {
+                *session = self.load(id)?;
+                // After the first the answer is there, whoever wrote what follows.
+                return Ok(seq > first);
+            }
+        }
+        *session = trial.session;
+        Ok(true)
+    }
+
+    /// Appends an entry to the store, then to the session; if another writer was
+    /// faster, reads the session again instead and says `false`.
+    pub(crate) fn append(
+        &self,
+        id: &SessionId,
+        session: &mut Session,
+        event: &Event,
+    ) -> Result<bool, WebError> {
+        if self.keep(id, session.entries(), event)? {
+            session.apply(event).map_err(WebError::Corrupt)?;
+            Ok(true)
+        } else {
+            *session = self.load(id)?;
+            Ok(false)
+        }
+    }
+
+    /// Appends an entry to the store; `false` if another writer was faster.
+    fn keep(&self, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
+        let body = serde_json::to_string(event).map_err(WebError::internal)?;
+        let begun = Instant::now();
+        match self.store.append(id, seq, &body) {
+            Ok(()) => {
+                self.metrics.appended(event, begun.elapsed());
+                Ok(true)
+            }
+            Err(StoreError::Taken { .. }) => Ok(false),
+            Err(error) => Err(WebError::internal(error)),
+        }
+    }
+}
