@@ -263,11 +263,7 @@ fn recordings_are_named_beside_the_log() {
         "world": {"kind": "pool", "upload": "0123456789abcdef0123456789abcdef"},
     }))
     .unwrap();
-    let recordings: String = ["a", "b", "a\",\"b", "b\",\"a"]
-        .iter()
-        .enumerate()
-        .map(|(place, word)| format!("{{\"id\":\"{place}\",\"word\":[\"{word}\"]}}\n"))
-        .collect();
+    let recordings = "{\"id\":\"0\",\"word\":[\"a\"]}\n{\"id\":\"1\",\"word\":[\"b\"]}\n{\"id\":\"2\",\"word\":[\"a\",\"b\"]}\n{\"id\":\"3\",\"word\":[\"b\",\"a\"]}\n";
     let pool = PoolReader::read(task.alphabet().unwrap(), recordings.as_bytes()).unwrap();
     let mut events = vec![Session::created(task, Setup::default())];
     let world = Arc::new(World::Pool(pool));
@@ -287,7 +283,7 @@ fn recordings_are_named_beside_the_log() {
         std::fs::write(&path, text).unwrap();
         path.to_str().unwrap().to_owned()
     };
-    let path = kept("recordings.jsonl", &recordings);
+    let path = kept("recordings.jsonl", recordings);
     let text = out(&replay(&log, &["--recordings", &path]));
     assert!(
         text.contains("1 entry of the learner's worked out again"),

@@ -9,6 +9,7 @@
 //! `MEMREP_SESSIONS=1000` runs so many of them; `MEMREP_SESSION=17` that one alone.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use memrep::evidence::Comparison;
 use memrep::learner::{Question, Reply, Strategy};
@@ -92,9 +93,11 @@ fn some_task(random: &mut ChaCha8Rng) -> Task {
             let rows = random.random_range(2..6_u32);
             let columns = random.random_range(3..7_u32);
             let mut table = String::from("is");
-            (0..columns).for_each(|column| table += &format!(",c{column}"));
+            for column in 0..columns {
+                let _ = write!(table, ",c{column}");
+            }
             for row in 0..rows {
-                table += &format!("\nr{row}");
+                let _ = write!(table, "\nr{row}");
                 // No two columns are alike: their numbers in binary, and noise below.
                 for column in 0..columns {
                     let bit = if row < 3 {
@@ -120,7 +123,7 @@ fn some_task(random: &mut ChaCha8Rng) -> Task {
     }
 }
 
-fn some_setup(task: &Task, random: &mut ChaCha8Rng) -> Setup {
+fn some_setup(random: &mut ChaCha8Rng) -> Setup {
     let strategies = [
         Strategy::Bayes,
         Strategy::Exp4Plus,
@@ -136,7 +139,6 @@ fn some_setup(task: &Task, random: &mut ChaCha8Rng) -> Setup {
         budget: *[300, 300, 3000, 3000, 20_000, 20_000, 200_000]
             .choose(random)
             .unwrap(),
-        ..Setup::of(task)
     }
 }
 
@@ -156,7 +158,7 @@ impl Life {
     fn begin(seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let task = some_task(&mut random);
-        let setup = some_setup(&task, &mut random);
+        let setup = some_setup(&mut random);
         let created = Session::created(task, setup);
         let mut life = Self {
             session: Session::replay(std::slice::from_ref(&created)).unwrap(),
@@ -306,24 +308,22 @@ impl Life {
                 let decided = self.session.answer(number, &Reply::Skip);
                 self.act("skipped", decided);
             }
-            (4, _) | (_, Position::Conflict(_) | Position::Done(_)) => match self.random.random() {
-                true => {
+            (4, _) | (_, Position::Conflict(_) | Position::Done(_)) => {
+                if self.random.random() {
                     let bound = self.session.task().max_states + 1;
                     let decided = self.session.enlarge(bound);
                     self.act("enlarged", decided);
+                    return;
                 }
-                false => {
-                    let blamed = match self.session.position() {
-                        Position::Conflict(conflict) => conflict.answers.first().copied(),
-                        _ => None,
-                    };
-                    let number = blamed.or_else(|| self.some_standing());
-                    if let Some(number) = number {
-                        let decided = self.session.retract(number);
-                        self.act("retracted", decided);
-                    }
+                let blamed = match self.session.position() {
+                    Position::Conflict(conflict) => conflict.answers.first().copied(),
+                    _ => None,
+                };
+                if let Some(number) = blamed.or_else(|| self.some_standing()) {
+                    let decided = self.session.retract(number);
+                    self.act("retracted", decided);
                 }
-            },
+            }
             (_, Position::Asking(number)) => {
                 let question = self.session.asked(number).unwrap().question.clone();
                 if let Some(reply) = self.reply(&question) {
@@ -571,8 +571,9 @@ fn sessions_are_rebuilt_from_their_logs_and_forget_what_was_taken_back() {
             lived.unwrap_or_else(|_| panic!("once more with MEMREP_SESSION={seed}"))
         })
         .reduce(Seen::new, |mut all, one| {
-            one.into_iter()
-                .for_each(|(what, times)| *all.entry(what).or_default() += times);
+            for (what, times) in one {
+                *all.entry(what).or_default() += times;
+            }
             all
         });
     eprintln!("{seen:?}");
