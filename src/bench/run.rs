@@ -1,13 +1,14 @@
 //! Does what a plan says: one scripted run after the other, on all cores.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use automata::{Dfa, Word};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::clock::thread_cpu;
 use super::contender::Contender;
@@ -138,25 +139,42 @@ pub fn size(plan: &Plan) -> u64 {
     jobs(plan).len() as u64
 }
 
-/// Runs everything, on the current thread pool; `done` hears of every run, in any
-/// order. The runs come back in the order of the plan.
+/// Runs everything, on so many threads; `done` hears of every run, in any order. The
+/// runs come back in the order of the plan.
 ///
 /// # Errors
 ///
 /// If a run cannot go on.
-pub fn run(plan: &Plan, done: impl Fn(&Run) + Sync) -> Result<Vec<Run>, RunError> {
+pub fn run(
+    plan: &Plan,
+    threads: NonZeroUsize,
+    done: impl Fn(&Run) + Sync,
+) -> Result<Vec<Run>, RunError> {
     let mut jobs: Vec<(usize, Job)> = jobs(plan).into_iter().enumerate().collect();
     // Neighbours are alike: mixed, every core has its share of the long ones
     // and the estimate of the time left is soon right.
     jobs.shuffle(&mut ChaCha8Rng::seed_from_u64(SHUFFLE));
-    let mut runs = jobs
-        .par_iter()
-        .map(|(place, job)| {
-            let run = one(plan, job)?;
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut runs = Vec::new();
+        while let Some((place, job)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let run = one(plan, job).inspect_err(|_| {
+                // What the others have begun they finish, and no more.
+                next.store(jobs.len(), Ordering::Relaxed);
+            })?;
             done(&run);
-            Ok((*place, run))
-        })
-        .collect::<Result<Vec<_>, RunError>>()?;
+            runs.push((*place, run));
+        }
+        Ok(runs)
+    };
+    let parts: Vec<Result<Vec<(usize, Run)>, RunError>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads.get()).map(|_| scope.spawn(work)).collect();
+        let ends = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
+        ends.map(|end| end.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    let parts: Vec<Vec<(usize, Run)>> = parts.into_iter().collect::<Result<_, _>>()?;
+    let mut runs: Vec<(usize, Run)> = parts.into_iter().flatten().collect();
     runs.sort_by_key(|&(place, _)| place);
     Ok(runs.into_iter().map(|(_, run)| run).collect())
 }

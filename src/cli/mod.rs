@@ -3,10 +3,14 @@
 //! Results go to stdout, progress and errors to stderr. The exit status is 0
 //! for done, 1 where the answer is "no", 2 for bad input or usage.
 
+#[cfg(feature = "server")]
+mod backup;
 mod bench;
 #[cfg(feature = "server")]
 mod config;
 mod convert;
+#[cfg(feature = "server")]
+mod database;
 mod equivalent;
 mod files;
 mod identify;
@@ -14,7 +18,11 @@ mod learn;
 #[cfg(feature = "server")]
 mod log;
 mod output;
+#[cfg(feature = "server")]
+mod password;
 mod replay;
+#[cfg(feature = "server")]
+mod restore;
 #[cfg(feature = "server")]
 mod serve;
 #[cfg(feature = "server")]
@@ -49,6 +57,15 @@ enum Command {
     /// Tell the settings that `serve` would run with, and where each comes from.
     #[cfg(feature = "server")]
     Config(config::Args),
+    /// Set the owner's password, without which nobody else's machine is served.
+    #[cfg(feature = "server")]
+    Password(password::Args),
+    /// Copy the database while a server writes to it.
+    #[cfg(feature = "server")]
+    Backup(backup::Args),
+    /// Put a backup in the place of the database.
+    #[cfg(feature = "server")]
+    Restore(restore::Args),
     /// Learn a target from a scripted teacher.
     Learn(learn::Args),
     /// Find the smallest automaton consistent with a sample.
@@ -84,7 +101,13 @@ pub fn main() -> ExitCode {
         Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
+        Some(Command::Backup(args)) => backup::run(&args),
+        #[cfg(feature = "server")]
+        Some(Command::Restore(args)) => restore::run(&args),
+        #[cfg(feature = "server")]
         Some(Command::Config(args)) => config::run(&args, flags),
+        #[cfg(feature = "server")]
+        Some(Command::Password(args)) => password::run(&args, flags),
         #[cfg(feature = "server")]
         Some(Command::Serve(_)) | None => serve::run(flags),
         #[cfg(not(feature = "server"))]

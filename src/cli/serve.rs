@@ -1,8 +1,8 @@
 //! `memrep serve`: the pages and the API, from one file of sessions.
 
 use std::io::ErrorKind;
-use std::net::{IpAddr, SocketAddr};
-use std::path::{Path, PathBuf};
+use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,9 +12,9 @@ use clap::ArgMatches;
 use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
 
-use super::{log, settings};
-use crate::server::{self, AppState};
-use crate::store::{Sqlite, Store};
+use super::{database, log, settings};
+use crate::server::{self, AppState, Origin, Reached};
+use crate::store::Store;
 
 /// How long work that nobody waits for any more may go on at the end.
 const LAST_WORK: Duration = Duration::from_secs(1);
@@ -43,8 +43,9 @@ pub(crate) struct Args {
     /// The address and port to serve on; port 0 takes a free one.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     pub(super) addr: SocketAddr,
-    /// The database file in which sessions are kept; created if there is none.
-    #[arg(long, value_name = "PATH", default_value = "memrep.db")]
+    /// The database file in which sessions are kept, created if there is none; or the
+    /// address of a `PostgreSQL` database that several servers share.
+    #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db")]
     pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.
@@ -62,6 +63,15 @@ pub(crate) struct Args {
     /// main one, and /metrics answers nobody but this machine.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) metrics_addr: Option<SocketAddr>,
+    /// An address under which people reach the server, as in
+    /// `https://teach.example.org`, where a proxy has the certificate; may be said
+    /// several times.
+    #[arg(long, value_name = "URL")]
+    pub(super) origin: Vec<Origin>,
+    /// A proxy is before the server and says for whom it asks: the last address in
+    /// X-Forwarded-For counts for limits.
+    #[arg(long)]
+    pub(super) behind_proxy: bool,
     /// A file of settings; without it memrep.toml in the working folder, if it is there.
     #[arg(long, value_name = "FILE")]
     pub(super) config: Option<PathBuf>,
@@ -70,7 +80,6 @@ pub(crate) struct Args {
 /// Runs the command, given how it was called.
 pub(super) fn run(flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     let (args, _) = settings::resolve::<Args>(flags)?;
-    refuse_public(args.addr.ip())?;
     allow_many_connections();
     let _written = log::start(args.log_format, args.log.clone());
     let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -103,11 +112,17 @@ async fn open(args: &Args) -> anyhow::Result<Opened> {
         Some(address) => Some(bind(address, "--metrics-addr").await?),
         None => None,
     };
-    let store = Sqlite::open(Path::new(&args.database))?;
+    let (named, is_public) = (args.database.clone(), is_public(args));
+    let opening = tokio::task::spawn_blocking(move || {
+        let store = database::open(&named)?;
+        refuse_unlocked(&named, is_public, &*store)?;
+        anyhow::Ok(store)
+    });
+    let store = opening.await.context("the store cannot be opened")??;
     Ok(Opened {
         listener,
         figures,
-        store: Arc::new(store),
+        store,
     })
 }
 
@@ -134,8 +149,17 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
     let at = at.context("the address is unknown")?;
     let stop = stop_signal()?;
     let lease = Duration::from_secs(args.lease.into());
-    let mut state = AppState::with_lease(opened.store, lease);
+    let reached = Reached {
+        is_public: is_public(&args),
+        behind_proxy: args.behind_proxy,
+        origins: args.origin,
+    };
+    let origins = reached.origins.clone();
+    let mut state = AppState::with_lease(opened.store, lease).reached(reached);
     println!("memrep is at http://{at}/");
+    for origin in origins {
+        println!("People reach it at {origin}/");
+    }
     let database = settings::masked(&args.database);
     println!("Sessions are kept in {database}. Stop with Ctrl+C.");
     tracing::info!(version = env!("CARGO_PKG_VERSION"), addr = %at, database, "started");
@@ -168,11 +192,17 @@ pub(super) fn allow_many_connections() {
 #[cfg(not(unix))]
 pub(super) fn allow_many_connections() {}
 
-/// There is no sign-in yet: whoever reaches the port can read and answer.
-fn refuse_public(address: IpAddr) -> anyhow::Result<()> {
-    if !address.is_loopback() {
+/// Whether other machines can reach the server, by itself or through a proxy.
+fn is_public(args: &Args) -> bool {
+    !args.addr.ip().is_loopback() || !args.origin.is_empty() || args.behind_proxy
+}
+
+/// Whoever reaches a server without a password can read and answer.
+fn refuse_unlocked(database: &str, is_public: bool, store: &dyn Store) -> anyhow::Result<()> {
+    if is_public && store.visits().password()?.is_none() {
         bail!(
-            "{address} can be reached from other machines, and there is no sign-in yet: serve on 127.0.0.1, and reach it from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)"
+            "other machines could reach this server, and it has no owner's password: set one with `memrep password --database {}`; then serve on 127.0.0.1 behind a proxy that has a certificate (memrep serve --behind-proxy --origin https://teach.example.org), since without TLS the password can be read on its way. Or stay on 127.0.0.1, and come from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)",
+            settings::masked(database)
         );
     }
     Ok(())

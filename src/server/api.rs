@@ -19,7 +19,8 @@ use super::forms;
 use super::upload::under_task;
 use crate::learner::Reply;
 use crate::session::{
-    Concept, Fields, MAX_STATES, Malformed, Position, RISK, SETUP_KEYS, Session, Setup, Task, ready,
+    Concept, Fields, MAX_STATES, Malformed, Position, RISK, Refusal, SETUP_KEYS, Session, Setup,
+    Task, ready,
 };
 use crate::store::SessionId;
 
@@ -160,7 +161,11 @@ async fn samples(State(app): State<AppState>, Path(id): Path<String>) -> Answer 
     Ok(Json(app.teaching.look(id, view).await??))
 }
 
-async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {
+async fn answer(
+    State(app): State<AppState>,
+    Path(id): Path<String>,
+    body: Body,
+) -> Result<Response, ApiError> {
     let id = session_id(&id)?;
     let body = read_body(body)?;
     let decide = move |session: &Session| {
@@ -178,7 +183,16 @@ async fn answer(State(app): State<AppState>, Path(id): Path<String>, body: Body)
         }
         Ok(session.agree(number, Some(looked as u32))?)
     };
-    Ok(Json(app.teaching.act(id, decide, Session::describe).await?))
+    match app.teaching.act(id, decide, Session::describe).await {
+        Ok(question) => Ok(Json(question).into_response()),
+        // Somebody else was faster: what is asked now comes along.
+        Err(error @ WebError::Refused(Refusal::Closed { .. })) => {
+            let view = |session: &Session| session.describe(session.position());
+            let question = app.teaching.look(id, view).await?;
+            Ok(ApiError(error).beside("question", &question))
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 async fn change(State(app): State<AppState>, Path(id): Path<String>, body: Body) -> Answer {

@@ -1,16 +1,20 @@
 //! What can go wrong with a request: one type, shown as JSON by the API and as
 //! a page by the pages.
 
+use std::io;
+use std::time::Duration;
+
 use axum::Json;
-use axum::http::header::RETRY_AFTER;
+use axum::http::header::{RETRY_AFTER, WWW_AUTHENTICATE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::observe;
 use super::upload::{RECORDINGS, UPLOAD_LIMIT};
 use super::views;
 use crate::session::{Corrupt, Malformed, Refusal};
+use crate::store::StoreError;
 
 /// Why a request was not granted. The cause of an internal error is logged and
 /// not sent.
@@ -36,6 +40,14 @@ pub(crate) enum WebError {
     UploadTooLarge,
     /// The request came from another site.
     Foreign,
+    /// Only the owner may have this.
+    SignIn,
+    /// It is not the owner's password.
+    WrongPassword,
+    /// Nobody can sign in, and others can reach the server.
+    NoPassword,
+    /// Too much was asked; in so long there may be more.
+    TooMany(Duration),
     /// No automaton is on show at the moment.
     NoAutomaton,
     /// The session learns no automaton.
@@ -44,6 +56,10 @@ pub(crate) enum WebError {
     TooLargeToShow(String),
     /// The learner is still at work.
     Slow,
+    /// There is no room for what was to be kept.
+    Full(String),
+    /// The store is elsewhere, and does not answer.
+    Away(String),
     /// The session's log cannot be read.
     Corrupt(Corrupt),
     /// Something that should not happen.
@@ -51,8 +67,22 @@ pub(crate) enum WebError {
 }
 
 impl WebError {
+    /// Something that should not happen; but what the store and the disk say of
+    /// themselves is told for what it is.
     pub(crate) fn internal(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
-        Self::Internal(error.into())
+        let error = error.into();
+        match error.downcast_ref::<StoreError>() {
+            Some(StoreError::Full { message }) => return Self::Full(message.clone()),
+            Some(StoreError::Away { message }) => return Self::Away(message.clone()),
+            Some(StoreError::Unread { error, .. }) if has_no_room(error) => {
+                return Self::Full(error.to_string());
+            }
+            _ => {}
+        }
+        match error.downcast_ref::<io::Error>() {
+            Some(met) if has_no_room(met) => Self::Full(met.to_string()),
+            _ => Self::Internal(error),
+        }
     }
 
     /// Whether the session is as it was.
@@ -86,8 +116,11 @@ impl WebError {
             | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
             Self::Unreadable(_) => StatusCode::BAD_REQUEST,
             Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
-            Self::Foreign => StatusCode::FORBIDDEN,
-            Self::Slow => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Foreign | Self::NoPassword => StatusCode::FORBIDDEN,
+            Self::SignIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
+            Self::TooMany(_) => StatusCode::TOO_MANY_REQUESTS,
+            Self::Slow | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Full(_) => StatusCode::INSUFFICIENT_STORAGE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -123,10 +156,16 @@ impl WebError {
             Self::Unreadable(_) => "unreadable_body",
             Self::TooLarge | Self::UploadTooLarge => "body_too_large",
             Self::Foreign => "cross_site",
+            Self::SignIn => "sign_in",
+            Self::WrongPassword => "wrong_password",
+            Self::NoPassword => "no_password",
+            Self::TooMany(_) => "too_many_requests",
             Self::NoAutomaton => "no_automaton",
             Self::NotAnAutomaton => "not_an_automaton",
             Self::TooLargeToShow(_) => "automaton_too_large",
             Self::Slow => "still_thinking",
+            Self::Full(_) => "disk_full",
+            Self::Away(_) => "store_unreachable",
             Self::Corrupt(_) => "log_unreadable",
             Self::Internal(_) => "internal",
         }
@@ -182,6 +221,10 @@ impl WebError {
                 "The request came from another site, so nothing was done: use this site's own pages."
                     .to_owned()
             }
+            Self::SignIn => "Only the owner of this server may have this: sign in, by `POST /api/v1/sign-in` with the password, and send the token as `Authorization: Bearer`.".to_owned(),
+            Self::WrongPassword => "That is not the password: try again.".to_owned(),
+            Self::NoPassword => "Other machines can reach this server, and it has no owner's password yet: set one with `memrep password`.".to_owned(),
+            Self::TooMany(wait) => format!("That was too much in a short time: try again in {} seconds.", whole_seconds(*wait)),
             Self::NoAutomaton => {
                 "No rule is on show at the moment: go on answering, or mend the answers that contradict each other, until one is.".to_owned()
             }
@@ -190,6 +233,14 @@ impl WebError {
             }
             Self::Slow => {
                 "The next question is still being worked out: many rules fit what was said, and they are compared. Your answers are kept: ask again in a moment."
+                    .to_owned()
+            }
+            Self::Full(_) => {
+                "The disk on which the answers are kept is full, so that what you just sent was not kept. Free space on it, then send it again: it will count once. What was kept before is safe."
+                    .to_owned()
+            }
+            Self::Away(_) => {
+                "The database in which the answers are kept cannot be reached, so that what you just sent may not have been kept. Send it again in a moment: it will count once. What was kept before is safe."
                     .to_owned()
             }
             Self::Corrupt(corrupt) => sentence(&format!(
@@ -211,11 +262,24 @@ impl WebError {
     fn log(&self) {
         match self {
             Self::Internal(cause) => tracing::error!(%cause, "request failed"),
+            Self::Full(cause) => tracing::error!(%cause, "no room to keep what was sent"),
+            Self::Away(cause) => tracing::error!(%cause, "the store cannot be reached"),
             Self::Corrupt(cause) => tracing::error!(%cause, "log unreadable"),
             Self::Slow => tracing::warn!("a question takes long"),
             _ => {}
         }
     }
+}
+
+/// The seconds to wait, as a header has them.
+fn whole_seconds(wait: Duration) -> u64 {
+    wait.as_secs() + u64::from(wait.subsec_nanos() > 0)
+}
+
+/// Whether a file could not grow.
+fn has_no_room(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }
 
 /// The same with a capital letter and a full stop.
@@ -261,8 +325,13 @@ impl From<Malformed> for WebError {
     }
 }
 
-impl IntoResponse for ApiError {
-    fn into_response(self) -> Response {
+impl ApiError {
+    /// The error with what was learned beside it, under this key.
+    pub(crate) fn beside(self, key: &str, value: &Value) -> Response {
+        self.respond(json!({ key: value }))
+    }
+
+    fn respond(self, mut body: Value) -> Response {
         self.0.log();
         let mut error = json!({"code": self.0.code(), "message": self.0.message()});
         if let Some(field) = self.0.field() {
@@ -271,18 +340,42 @@ impl IntoResponse for ApiError {
         if let Some(id) = self.0.told_by() {
             error["request"] = id.into();
         }
-        let mut response = (self.0.status(), Json(json!({ "error": error }))).into_response();
-        if matches!(self.0, WebError::Slow) {
-            let soon = HeaderValue::from_static("1");
-            response.headers_mut().insert(RETRY_AFTER, soon);
+        body["error"] = error;
+        let mut response = (self.0.status(), Json(body)).into_response();
+        let headers = response.headers_mut();
+        match self.0 {
+            WebError::Slow => {
+                headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
+            }
+            WebError::Away(_) => {
+                headers.insert(RETRY_AFTER, HeaderValue::from_static("2"));
+            }
+            WebError::TooMany(wait) => {
+                headers.insert(RETRY_AFTER, whole_seconds(wait).into());
+            }
+            WebError::SignIn => {
+                headers.insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+            }
+            _ => {}
         }
         response
+    }
+}
+
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        self.respond(json!({}))
     }
 }
 
 impl IntoResponse for PageError {
     fn into_response(self) -> Response {
         self.0.log();
-        views::error_page(&self.0)
+        let mut response = views::error_page(&self.0);
+        if let WebError::TooMany(wait) = self.0 {
+            let wait = whole_seconds(wait).into();
+            response.headers_mut().insert(RETRY_AFTER, wait);
+        }
+        response
     }
 }

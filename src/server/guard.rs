@@ -1,20 +1,24 @@
 //! What keeps other sites out: headers, the origin of requests, the host they
 //! were meant for.
 
-use axum::extract::Request;
+use axum::extract::{Request, State};
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, HOST, HeaderName, HeaderValue, REFERRER_POLICY,
-    X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
+    STRICT_TRANSPORT_SECURITY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
 };
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
+use super::AppState;
 use super::error::{ApiError, PageError, WebError};
 
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; media-src 'self'; connect-src 'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; media-src 'self'; connect-src 'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
+
+/// What a page may ask of the machine: nothing.
+const PERMISSIONS: &str = "camera=(), microphone=(), geolocation=(), display-capture=(), payment=(), usb=(), serial=(), bluetooth=(), midi=(), accelerometer=(), gyroscope=(), magnetometer=(), browsing-topics=()";
 
 const HEADERS: [(HeaderName, &str); 6] = [
-    (CONTENT_SECURITY_POLICY, POLICY),
+    (HeaderName::from_static("permissions-policy"), PERMISSIONS),
     (X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (REFERRER_POLICY, "no-referrer"),
     (X_FRAME_OPTIONS, "DENY"),
@@ -28,14 +32,24 @@ const HEADERS: [(HeaderName, &str); 6] = [
     ),
 ];
 
+/// For a year: whoever says that there is TLS means it.
+const ONLY_TLS: HeaderValue = HeaderValue::from_static("max-age=31536000");
+
 /// Adds the security headers to every response, and forbids keeping those that
 /// do not say otherwise.
-pub(crate) async fn headers(request: Request, next: Next) -> Response {
+pub(crate) async fn headers(State(app): State<AppState>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
+    if app.door.has_tls() {
+        headers.insert(STRICT_TRANSPORT_SECURITY, ONLY_TLS);
+    }
+    // What was uploaded has one of its own, which allows less.
+    headers
+        .entry(CONTENT_SECURITY_POLICY)
+        .or_insert(HeaderValue::from_static(POLICY));
     headers
         .entry(CACHE_CONTROL)
         .or_insert(HeaderValue::from_static("no-store"));
@@ -46,11 +60,11 @@ pub(crate) async fn headers(request: Request, next: Next) -> Response {
 ///
 /// A page of another site can point its own name at this machine and then read
 /// what is served here. It cannot make the browser send a number or
-/// `localhost` as the host's name.
-pub(crate) async fn host(request: Request, next: Next) -> Response {
+/// `localhost` as the host's name, nor the name that the owner gave.
+pub(crate) async fn host(State(app): State<AppState>, request: Request, next: Next) -> Response {
     let own = match request.headers().get(HOST) {
         None => true,
-        Some(host) => host.to_str().is_ok_and(is_own),
+        Some(host) => host.to_str().is_ok_and(|host| app.door.answers_to(host)),
     };
     if own {
         next.run(request).await
@@ -74,9 +88,14 @@ pub(crate) fn is_own(host: &str) -> bool {
         || bare.parse::<std::net::IpAddr>().is_ok()
 }
 
+/// Whether scripts ask there.
+pub(crate) fn is_api(path: &str) -> bool {
+    path == "/api" || path.starts_with("/api/")
+}
+
 /// The error in the form that fits the address.
 pub(crate) fn refuse(path: &str, error: WebError) -> Response {
-    if path == "/api" || path.starts_with("/api/") {
+    if is_api(path) {
         ApiError(error).into_response()
     } else {
         PageError(error).into_response()

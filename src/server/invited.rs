@@ -1,6 +1,7 @@
 //! The pages of an invited person: a question at a time, what they said, and nothing
 //! of what others say.
 
+use std::fmt;
 use std::sync::Arc;
 
 use askama::Template;
@@ -14,6 +15,7 @@ use super::AppState;
 use super::behaviour::{BehaviourView, Brief};
 use super::error::{PageError, WebError};
 use super::leases::{Leases, Turn};
+use super::owner;
 use super::pages::{Fields, HistoryPage, read_form};
 use super::past::{PastView, RecentView};
 use super::rule::RuleView;
@@ -28,50 +30,115 @@ use crate::store::{InviteKey, SessionId};
 /// All routes of invited people.
 pub(crate) fn routes() -> Router<AppState> {
     Router::new()
-        .route("/answer/{key}", get(show))
-        .route("/answer/{key}/answers", post(answer))
-        .route("/answer/{key}/retractions", post(retract))
-        .route("/answer/{key}/history", get(history))
-        .route("/answer/{key}/practice", get(practise).post(practised))
-        .route("/answer/{key}/live", get(follow))
-        .route("/answer/{key}/media/{*path}", get(file))
+        .route("/answer/{key}", get(door).post(enter))
+        .route("/answer/s/{place}", get(show))
+        .route("/answer/s/{place}/answers", post(answer))
+        .route("/answer/s/{place}/retractions", post(retract))
+        .route("/answer/s/{place}/history", get(history))
+        .route("/answer/s/{place}/practice", get(practise).post(practised))
+        .route("/answer/s/{place}/live", get(follow))
+        .route("/answer/s/{place}/media/{*path}", get(file))
 }
 
-/// Who answers with a key.
+/// Who answers.
 #[derive(Clone, Copy)]
 pub(crate) struct Guest {
-    pub(crate) key: InviteKey,
+    /// Where their pages are: no secret, since whoever has no visit sees nothing there.
+    place: Place,
     pub(crate) session: SessionId,
     pub(crate) person: u32,
 }
 
+/// Where an invited person's pages are, one place for each invitation: so that somebody
+/// may have several in one browser. It is the beginning of what the store has of the
+/// key, which tells nothing of the key.
+#[derive(Clone, Copy)]
+struct Place([u8; Place::DIGITS]);
+
+impl Place {
+    const DIGITS: usize = 16;
+
+    fn of(digest: &str) -> Option<Self> {
+        let is_digit = |b: &u8| matches!(b, b'0'..=b'9' | b'a'..=b'f');
+        let digits: [u8; Self::DIGITS] = digest.as_bytes().get(..Self::DIGITS)?.try_into().ok()?;
+        digits.iter().all(is_digit).then_some(Self(digits))
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0
+            .iter()
+            .try_for_each(|digit| write!(f, "{}", char::from(*digit)))
+    }
+}
+
 impl Guest {
-    /// Finds out.
+    /// Who has this key.
     ///
     /// # Errors
     ///
-    /// If nobody answers with this key any more.
+    /// If nobody answers with it any more.
     pub(crate) async fn of(app: &AppState, key: &str) -> Result<Self, WebError> {
         let key: InviteKey = key.parse().map_err(|_| WebError::NotInvited)?;
-        let (session, person) = app.teaching.invited(key).await?;
-        let guest = Self {
-            key,
-            session,
-            person,
-        };
-        let view = move |session: &Session| {
-            let known = session.panel().people().get(&person);
-            known.is_some_and(|person| !person.left)
-        };
-        if app.teaching.look(session, view).await? {
-            Ok(guest)
-        } else {
-            Err(WebError::NotInvited)
+        match Self::lead(app, &key).await? {
+            (guest, None) => Ok(guest),
+            // Who teaches alone does that in their own session.
+            (_, Some(_)) => Err(WebError::NotInvited),
         }
     }
 
+    /// Who has this key, and the session that they have to themselves, if they have.
+    async fn lead(app: &AppState, key: &InviteKey) -> Result<(Self, Option<String>), WebError> {
+        let (session, person) = app.teaching.invited(*key).await?;
+        let place = Place::of(&key.digest()).ok_or(WebError::NotInvited)?;
+        let guest = Self {
+            place,
+            session,
+            person,
+        };
+        let own = guest.stays(app).await?;
+        Ok((guest, own))
+    }
+
+    /// Who visits at this place.
+    ///
+    /// # Errors
+    ///
+    /// If that is nobody, or nobody any more.
+    async fn at(app: &AppState, place: &str, headers: &HeaderMap) -> Result<Self, WebError> {
+        let known = Place::of(place).filter(|_| place.len() == Place::DIGITS);
+        let known = known.ok_or(WebError::NotInvited)?;
+        let (session, person) = owner::invited(app, headers, place).await?;
+        let guest = Self {
+            place: known,
+            session,
+            person,
+        };
+        match guest.stays(app).await? {
+            None => Ok(guest),
+            Some(_) => Err(WebError::NotInvited),
+        }
+    }
+
+    /// The session that they have to themselves, if they have one.
+    ///
+    /// # Errors
+    ///
+    /// If they are no longer of those who answer.
+    async fn stays(&self, app: &AppState) -> Result<Option<String>, WebError> {
+        let person = self.person;
+        let view = move |session: &Session| {
+            let known = session.panel().people().get(&person);
+            let known = known.filter(|person| !person.left);
+            known.map(|person| person.session.clone())
+        };
+        let known = app.teaching.look(self.session, view).await?;
+        known.ok_or(WebError::NotInvited)
+    }
+
     fn home(&self) -> String {
-        format!("/answer/{}", self.key)
+        format!("/answer/s/{}", self.place)
     }
 
     fn bar(&self, session: &Session) -> Bar {
@@ -154,8 +221,51 @@ fn page(guest: Guest, session: &Session, leases: &Leases, notice: Option<String>
     render(&QuestionPage::of(shell, bar, notice, put, session))
 }
 
-async fn show(State(app): State<AppState>, Path(key): Path<String>) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+#[derive(Template)]
+#[template(path = "door.html")]
+struct DoorPage {
+    shell: Shell,
+    key: InviteKey,
+}
+
+fn key(text: &str) -> Result<InviteKey, WebError> {
+    text.parse().map_err(|_| WebError::NotInvited)
+}
+
+/// `GET /answer/{key}`: a button to begin with. A look at the link changes nothing, as
+/// programs take that show where a link leads before anybody follows it.
+async fn door(
+    State(app): State<AppState>,
+    Path(text): Path<String>,
+) -> Result<Response, PageError> {
+    let key = key(&text)?;
+    Guest::lead(&app, &key).await?;
+    Ok(render(&DoorPage {
+        shell: Shell::plain("You are invited"),
+        key,
+    }))
+}
+
+/// `POST /answer/{key}`: a cookie for the key, which is in no address from then on.
+async fn enter(
+    State(app): State<AppState>,
+    Path(text): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, PageError> {
+    let key = key(&text)?;
+    let (guest, own) = Guest::lead(&app, &key).await?;
+    let home = own.map_or_else(|| guest.home(), |own| format!("/sessions/{own}"));
+    let answer = Redirect::to(&home).into_response();
+    let place = guest.place.to_string();
+    Ok(owner::let_in(&app, &headers, &place, key.digest(), answer).await?)
+}
+
+async fn show(
+    State(app): State<AppState>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, PageError> {
+    let guest = Guest::at(&app, &place, &headers).await?;
     Ok(put(&app, guest, None).await?)
 }
 
@@ -188,10 +298,11 @@ pub(crate) fn say(
 
 async fn answer(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
     fields: Fields,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     let form = read_form(fields)?;
     let decide = move |session: &Session| {
         let reply = form.reply(session.universe())?;
@@ -220,10 +331,11 @@ async fn answer(
 
 async fn retract(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
     fields: Fields,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     let form = read_form(fields)?;
     let decide =
         move |session: &Session| Ok(session.unsay(guest.person, form.number("question")?)?);
@@ -252,9 +364,10 @@ async fn done(
 
 async fn history(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     let view = move |session: &Session| {
         let bar = guest.bar(session);
         let answered = session.panel().answered_by(guest.person).iter().rev();
@@ -278,19 +391,21 @@ async fn history(
 
 async fn practise(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     let view = move |session: &Session| practice::page(guest.bar(session), session, None);
     Ok(app.teaching.look(guest.session, view).await??)
 }
 
 async fn practised(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
     fields: Fields,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     let form = read_form(fields)?;
     let view = move |session: &Session| {
         practice::page(guest.bar(session), session, Some(form.text("answer")))
@@ -300,17 +415,18 @@ async fn practised(
 
 async fn follow(
     State(app): State<AppState>,
-    Path(key): Path<String>,
+    Path(place): Path<String>,
+    headers: HeaderMap,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     Ok(live::news(&app, guest.session).await?.into_response())
 }
 
 async fn file(
     State(app): State<AppState>,
-    Path((key, path)): Path<(String, String)>,
+    Path((place, path)): Path<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
-    let guest = Guest::of(&app, &key).await?;
+    let guest = Guest::at(&app, &place, &headers).await?;
     Ok(media::serve(&app, guest.session, path, &headers).await?)
 }

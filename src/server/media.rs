@@ -8,7 +8,8 @@ use std::task::{Context, Poll};
 use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::{Path, State};
 use axum::http::header::{
-    ACCEPT_RANGES, CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_TYPE, IF_RANGE, RANGE,
+    ACCEPT_RANGES, CACHE_CONTROL, CONTENT_LENGTH, CONTENT_RANGE, CONTENT_SECURITY_POLICY,
+    CONTENT_TYPE, IF_RANGE, RANGE,
 };
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
@@ -23,6 +24,10 @@ use crate::store::{CHUNK, SessionId, Store, StoreError, StoredFile};
 
 /// What was uploaded never changes.
 const KEEP: &str = "private, max-age=31536000, immutable";
+/// An SVG is a picture wherever it is shown, and where somebody opens its address it
+/// is one too: nothing in it runs, and it loads nothing.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 /// Chunks that wait for the network.
 const WAITING: usize = 2;
 
@@ -77,7 +82,11 @@ pub(crate) async fn serve(
             (CONTENT_TYPE, file.kind.clone()),
             (CONTENT_LENGTH, (part.end - part.start).to_string()),
         ],
-        [(ACCEPT_RANGES, "bytes"), (CACHE_CONTROL, KEEP)],
+        [
+            (ACCEPT_RANGES, "bytes"),
+            (CACHE_CONTROL, KEEP),
+            (CONTENT_SECURITY_POLICY, POLICY),
+        ],
         Body::new(Chunks::of(app.teaching.store(), file, part)),
     )
         .into_response();

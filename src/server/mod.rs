@@ -9,6 +9,7 @@ mod ahead;
 mod api;
 mod assets;
 mod behaviour;
+mod budget;
 mod busy;
 mod chart;
 mod check;
@@ -28,12 +29,14 @@ mod media;
 mod metrics;
 mod observe;
 mod outlook;
+mod owner;
 mod pages;
 mod past;
 mod people;
 mod people_api;
 mod practice;
 mod recording;
+pub mod routes;
 mod rule;
 mod scene;
 mod spent;
@@ -54,7 +57,7 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
@@ -66,6 +69,8 @@ use tower_http::timeout::RequestBodyDeadlineLayer;
 use crate::store::Store;
 use error::{ApiError, PageError, WebError};
 use metrics::Metrics;
+pub use owner::{BadPassword, NoOrigin, Origin, Reached, hash_password};
+use owner::{Door, SharedDoor};
 use teaching::Teaching;
 
 /// The largest body of a form: 64 KiB.
@@ -86,6 +91,8 @@ pub struct AppState {
     metrics: Arc<Metrics>,
     /// Whose turn it is to ask whether the store is well.
     probes: Arc<Semaphore>,
+    /// Who may come in.
+    door: SharedDoor,
     /// Whether the figures are on an address of their own.
     figures_apart: bool,
 }
@@ -106,7 +113,17 @@ impl AppState {
             teaching: Teaching::new(store, width, lease, Arc::clone(&metrics)),
             metrics,
             probes: Arc::new(Semaphore::new(1)),
+            door: Arc::new(Door::new(Reached::default())),
             figures_apart: false,
+        }
+    }
+
+    /// The same, reached in this way.
+    #[must_use]
+    pub fn reached(self, reached: Reached) -> Self {
+        Self {
+            door: Arc::new(Door::new(reached)),
+            ..self
         }
     }
 
@@ -136,6 +153,7 @@ pub fn app(state: AppState) -> Router {
     let new_session = Router::new().route("/sessions", post(upload::create));
     let api = api::routes()
         .merge(people_api::routes())
+        .merge(owner::api_routes())
         .layer(in_time.clone())
         .merge(new_session.layer(uploads_in_time.clone()))
         .fallback(async || ApiError(WebError::NoPage))
@@ -151,6 +169,7 @@ pub fn app(state: AppState) -> Router {
         .merge(studio::routes())
         .merge(people::routes())
         .merge(invited::routes())
+        .merge(owner::routes())
         .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))
@@ -167,10 +186,11 @@ pub fn app(state: AppState) -> Router {
     Router::new()
         .nest("/api/v1", api.with_state(state.patient()))
         .merge(pages.with_state(state.clone()))
+        .layer(from_fn_with_state(state.clone(), owner::admit))
         .layer(same_site)
-        .layer(from_fn(guard::host))
+        .layer(from_fn_with_state(state.clone(), guard::host))
         .merge(health::routes(state.clone()))
-        .layer(from_fn(guard::headers))
+        .layer(from_fn_with_state(state.clone(), guard::headers))
         .layer(from_fn_with_state(state, observe::observe))
 }
 

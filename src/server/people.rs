@@ -12,6 +12,7 @@ use super::api::session_id;
 use super::behaviour::{BehaviourView, Content};
 use super::error::{PageError, WebError};
 use super::forms::Form;
+use super::owner;
 use super::pages::{Fields, read_form};
 use super::past::{Choice, PastView, said};
 use super::views::{Bar, Shell, render};
@@ -289,8 +290,9 @@ pub(crate) async fn invited(app: &AppState, id: SessionId, name: String) -> Resu
     let person = app.teaching.act(id, decide, view).await?;
     let person = person.ok_or_else(|| WebError::internal("nobody was invited"))?;
     Ok(match own {
-        Some(own) => (person, format!("/sessions/{own}")),
-        None => (person, path(&app.teaching.new_key(id, person).await?)),
+        // Where everybody comes in, the session's own address is enough.
+        Some(own) if !owner::is_locked(app).await? => (person, format!("/sessions/{own}")),
+        _ => (person, path(&app.teaching.new_key(id, person).await?)),
     })
 }
 

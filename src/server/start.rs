@@ -8,6 +8,7 @@ use super::AppState;
 use super::behaviour::{Chip, chips};
 use super::error::{PageError, WebError, sentence};
 use super::forms::{FILE, Faults};
+use super::owner;
 use super::pages::read_form;
 use super::upload::{self, OwnRule};
 use super::views::{Shell, render};
@@ -47,6 +48,8 @@ struct StartPage {
     tasks: Vec<TaskCard>,
     classics: Vec<TaskCard>,
     sessions: Vec<SessionCard>,
+    /// Whether there is somebody to sign out.
+    locked: bool,
     own: OwnForm,
     faults: Faults,
     file: SentFile,
@@ -100,6 +103,7 @@ async fn start_page(
         tasks,
         classics,
         sessions: sessions.iter().filter_map(session_card).collect(),
+        locked: owner::is_locked(app).await?,
         own,
         faults,
         file,

@@ -62,6 +62,9 @@ impl Teaching {
         metrics: Arc<Metrics>,
     ) -> Self {
         let pools = Pools::default();
+        let live: Arc<Live> = Arc::default();
+        let told = Arc::clone(&live);
+        store.follow(Box::new(move |id, entries| told.tell(id, entries)));
         Self {
             archive: Arc::new(Archive {
                 store,
@@ -72,7 +75,7 @@ impl Teaching {
             permits: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
-            live: Arc::default(),
+            live,
             leases: Arc::new(Leases::new(lease)),
             over: Stop::default(),
             patience: SOON,
@@ -251,6 +254,7 @@ impl Teaching {
                 let begun = Instant::now();
                 let (archive, foresight) = (&here.archive, &here.foresight);
                 let mut session = match held.take() {
+                    Some(session) if archive.store.is_shared() => catch_up(archive, &id, session)?,
                     Some(session) => session,
                     None => load(archive, &id)?,
                 };
@@ -331,20 +335,10 @@ impl Teaching {
 }
 
 fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
-    let entries = archive.store.read(id).map_err(WebError::internal)?;
-    if entries.is_empty() {
+    let events = events(archive, id, 0)?;
+    if events.is_empty() {
         return Err(WebError::NoSession);
     }
-    let events = entries
-        .iter()
-        .map(|entry| {
-            serde_json::from_str(&entry.body).map_err(|error| Corrupt {
-                entry: entry.seq,
-                message: error.to_string(),
-            })
-        })
-        .collect::<Result<Vec<Event>, _>>()
-        .map_err(WebError::Corrupt)?;
     let world = match events.first() {
         Some(Event::Created { task, .. }) => archive.pools.world(&*archive.store, task),
         _ => Ok(None),
@@ -355,6 +349,31 @@ fn load(archive: &Archive, id: &SessionId) -> Result<Session, WebError> {
         other => other,
     })?;
     Session::replay_in(world, &events).map_err(WebError::Corrupt)
+}
+
+/// The session with what other servers wrote since it was last here.
+fn catch_up(archive: &Archive, id: &SessionId, mut session: Session) -> Result<Session, WebError> {
+    for event in events(archive, id, session.entries())? {
+        session.apply(&event).map_err(WebError::Corrupt)?;
+    }
+    Ok(session)
+}
+
+/// A session's log from this entry on.
+fn events(archive: &Archive, id: &SessionId, from: u64) -> Result<Vec<Event>, WebError> {
+    let entries = match from {
+        0 => archive.store.read(id),
+        _ => archive.store.read_from(id, from),
+    };
+    let entries = entries.map_err(WebError::internal)?;
+    let events = entries.iter().map(|entry| {
+        serde_json::from_str(&entry.body).map_err(|error| Corrupt {
+            entry: entry.seq,
+            message: error.to_string(),
+        })
+    });
+    let events: Result<Vec<Event>, Corrupt> = events.collect();
+    events.map_err(WebError::Corrupt)
 }
 
 /// Decides, appends and thinks; where that led. What was decided is kept even where

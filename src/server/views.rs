@@ -144,6 +144,8 @@ pub(crate) fn error_page(error: &WebError) -> Response {
         StatusCode::NOT_FOUND => "Nothing here",
         StatusCode::ACCEPTED => "Still thinking",
         StatusCode::INTERNAL_SERVER_ERROR => "That went wrong",
+        StatusCode::INSUFFICIENT_STORAGE => "The disk is full",
+        StatusCode::SERVICE_UNAVAILABLE => "The database is away",
         _ => "That did not work",
     };
     let page = ErrorPage {

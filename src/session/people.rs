@@ -7,7 +7,7 @@ use super::panel::{MAX_ANSWERS, MAX_NAME, MAX_PEOPLE, Panel, Person, Terms, is_f
 use super::{Position, Session};
 use crate::evidence::AnswerId;
 use crate::learner::{Question, Reply};
-use crate::task::Atom;
+use crate::task::{Atom, is_disruptive};
 
 impl Session {
     /// The people who answer, and what they said.
@@ -100,8 +100,7 @@ impl Session {
     /// If there are too many, or the name is no name.
     pub fn invite(&self, name: &str, session: Option<String>) -> Result<Decision, Refusal> {
         let name = name.trim();
-        if name.is_empty() || name.chars().count() > MAX_NAME || name.chars().any(char::is_control)
-        {
+        if name.is_empty() || name.chars().count() > MAX_NAME || name.chars().any(is_disruptive) {
             return Err(Refusal::BadName);
         }
         if self.panel.people().len() >= MAX_PEOPLE {

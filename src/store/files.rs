@@ -44,7 +44,7 @@ pub(super) fn insert(
 }
 
 /// As many bytes as there are, up to the buffer's length.
-fn fill(from: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<usize> {
+pub(super) fn fill(from: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {
         match from.read(&mut buffer[filled..]) {

@@ -80,14 +80,19 @@ impl InviteKey {
     /// What is kept of it: nobody who reads the database can answer with that. A
     /// key is as random as can be, so that a plain digest cannot be guessed back.
     pub fn digest(&self) -> String {
-        use std::fmt::Write as _;
-        let mut text = String::with_capacity(64);
-        for byte in Sha256::digest(self.0) {
-            // Writing to a string never fails.
-            let _ = write!(text, "{byte:02x}");
-        }
-        text
+        digest(&self.0)
     }
+}
+
+/// The SHA-256 of a key, in hexadecimal digits.
+pub(super) fn digest(key: &[u8]) -> String {
+    use std::fmt::Write as _;
+    let mut text = String::with_capacity(64);
+    for byte in Sha256::digest(key) {
+        // Writing to a string never fails.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
 }
 
 fn read(text: &str) -> Option<[u8; 16]> {

@@ -4,16 +4,25 @@
 //! to it: it must not know the learner, nor what an entry means; a file is bytes
 //! with a name and a type; and a person is a number that a key opens.
 
+mod backup;
 mod files;
 mod id;
+#[cfg(feature = "postgres")]
+mod postgres;
 mod schema;
 mod sqlite;
 mod together;
+mod visits;
 
 use std::io::Read;
 
+pub use backup::{Checked, back_up, check_backup, restore};
+pub(crate) use backup::{free_name, now};
 pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
+#[cfg(feature = "postgres")]
+pub use postgres::Postgres;
 pub use sqlite::Sqlite;
+pub use visits::{NoVisitKey, Visit, VisitKey, Visitor, Visits};
 
 /// The bytes of a file lie in pieces of this size, the last one shorter.
 pub const CHUNK: usize = 256 * 1024;
@@ -123,10 +132,55 @@ pub enum StoreError {
         /// Why.
         error: std::io::Error,
     },
+    /// There is no room for what was to be kept.
+    #[error("there is no room left for the database: {message}")]
+    Full {
+        /// What was met.
+        message: String,
+    },
+    /// The database is elsewhere, and does not answer.
+    #[error("the database cannot be reached: {message}")]
+    Away {
+        /// What was met.
+        message: String,
+    },
+    /// A log has a gap: something else than memrep wrote there.
+    #[error("entry {seq} of session {session:?} is missing")]
+    Missing {
+        /// The session.
+        session: SessionId,
+        /// The number.
+        seq: u64,
+    },
+    /// A backup could not be made or put back.
+    #[error("{path}: {message}")]
+    Backup {
+        /// The file that is meant.
+        path: String,
+        /// What is wrong, and what to do.
+        message: String,
+    },
     /// The database failed.
     #[error("the database failed: {0}")]
-    Database(#[from] rusqlite::Error),
+    Database(rusqlite::Error),
+    /// The `PostgreSQL` server did not do what it was asked.
+    #[cfg(feature = "postgres")]
+    #[error("the database failed: {}", postgres::told(.0))]
+    Postgres(tokio_postgres::Error),
 }
+
+impl From<rusqlite::Error> for StoreError {
+    fn from(error: rusqlite::Error) -> Self {
+        if sqlite::is_full(&error) {
+            let message = error.to_string();
+            return Self::Full { message };
+        }
+        Self::Database(error)
+    }
+}
+
+/// Who wants to hear that a session has so many entries now.
+pub type Hear = Box<dyn Fn(SessionId, u64) + Send + Sync>;
 
 /// Logs of sessions: append-only, one writer for each number; and uploads, which
 /// never change.
@@ -150,6 +204,27 @@ pub trait Store: Send + Sync {
     ///
     /// If the database fails.
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError>;
+
+    /// The entries of a session's log from this number on, in order.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {
+        let mut entries = self.read(session)?;
+        entries.retain(|entry| entry.seq >= seq);
+        Ok(entries)
+    }
+
+    /// Whether other servers write to the same logs, so that what is in memory may be
+    /// behind them.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
+    /// Tells from now on which sessions have grown, whoever wrote to them, where the
+    /// store [is shared](Self::is_shared). News may come twice, and late.
+    fn follow(&self, _hear: Hear) {}
 
     /// The sessions with the latest entries, latest first.
     ///
@@ -189,6 +264,9 @@ pub trait Store: Send + Sync {
     ///
     /// If the database fails.
     fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError>;
+
+    /// Who is signed in, and the owner's password.
+    fn visits(&self) -> &dyn Visits;
 
     /// The upload that the session was created with, if it was with one.
     ///

@@ -7,7 +7,7 @@ use super::StoreError;
 /// "MemR": says in the file's header whose it is.
 const APPLICATION: i64 = 0x4d65_6d52;
 /// The schema's version, in the file's header.
-const VERSION: i64 = 3;
+const VERSION: i64 = 4;
 
 /// What makes each version out of the one before, from version 1. A step that
 /// was released is never changed.
@@ -59,6 +59,21 @@ CREATE TABLE invites (
     PRIMARY KEY (session, person)
 ) STRICT, WITHOUT ROWID;
 ",
+    // A visit names its invitation by the digest, which a new link replaces: with the
+    // old link end its visits. Times are seconds since 1970.
+    "
+CREATE TABLE owner (
+    only INTEGER PRIMARY KEY CHECK (only = 1),
+    password TEXT NOT NULL
+) STRICT;
+CREATE TABLE visits (
+    digest TEXT PRIMARY KEY,
+    invite TEXT,
+    begun INTEGER NOT NULL,
+    seen INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+CREATE INDEX visits_by_time ON visits (begun);
+",
 ];
 
 /// Refuses a file that this program did not write, before anything touches it.
@@ -90,6 +105,12 @@ pub(super) fn check_header(
         });
     }
     Ok(())
+}
+
+/// The version of a database of ours that is to be brought up to date.
+pub(super) fn earlier_version(connection: &Connection) -> rusqlite::Result<Option<i64>> {
+    let version = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    Ok((1..VERSION).contains(&version).then_some(version))
 }
 
 /// Makes the tables, or brings those of an earlier version to this one: all of it,

@@ -4,13 +4,19 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use rusqlite::ffi::{SQLITE_IOERR_SHMSIZE, SQLITE_IOERR_WRITE};
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionBehavior, params};
 
-use super::schema::{bring_up_to_date, check_header};
+use super::schema::{bring_up_to_date, check_header, earlier_version};
 use super::together::Together;
 use super::{
-    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, files,
+    Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, Visits,
+    backup, files,
 };
+
+/// The most bytes of the write-ahead log that stay on the disk once it is written
+/// into the database.
+const LOG_LIMIT: i64 = 16 << 20;
 
 /// Logs in one `SQLite` file: write-ahead log, synced to the disk before an
 /// append returns. Not for network file systems.
@@ -58,6 +64,9 @@ impl Sqlite {
             .busy_timeout(Duration::from_secs(5))
             .map_err(unusable)?;
         check_header(&connection, &shown, unusable)?;
+        if let Some(version) = earlier_version(&connection).map_err(unusable)? {
+            backup::before_upgrade(&connection, path, version)?;
+        }
         prepare(connection).map_err(unusable)
     }
 
@@ -70,8 +79,22 @@ impl Sqlite {
         Ok(prepare(Connection::open_in_memory()?)?)
     }
 
+    /// Lets the database grow to so many bytes and no further.
+    ///
+    /// # Errors
+    ///
+    /// If the database fails.
+    pub fn limit(&self, bytes: u64) -> Result<(), StoreError> {
+        let connection = self.connection();
+        let page = |row: &rusqlite::Row<'_>| row.get(0);
+        let size: i64 = connection.query_row("PRAGMA page_size", [], page)?;
+        let pages = i64::try_from(bytes).unwrap_or(i64::MAX) / size.max(1);
+        connection.query_row(&format!("PRAGMA max_page_count = {pages}"), [], |_| Ok(()))?;
+        Ok(())
+    }
+
     /// A panic elsewhere cannot have left a transaction open: they roll back.
-    fn connection(&self) -> MutexGuard<'_, Connection> {
+    pub(super) fn connection(&self) -> MutexGuard<'_, Connection> {
         self.connection
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -82,6 +105,8 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     connection.pragma_update(None, "journal_mode", "WAL")?;
     connection.pragma_update(None, "synchronous", "FULL")?;
     connection.pragma_update(None, "foreign_keys", "ON")?;
+    // After an upload the log gives its room back.
+    connection.pragma_update(None, "journal_size_limit", LOG_LIMIT)?;
     bring_up_to_date(&mut connection)?;
     Ok(Sqlite {
         connection: Mutex::new(connection),
@@ -96,10 +121,17 @@ impl Store for Sqlite {
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
+        self.read_from(session, 0)
+    }
+
+    fn read_from(&self, session: &SessionId, seq: u64) -> Result<Vec<Entry>, StoreError> {
         let connection = self.connection();
-        let mut statement = connection
-            .prepare_cached("SELECT seq, at, body FROM entries WHERE session = ?1 ORDER BY seq")?;
-        let entries = statement.query_map([session.to_string()], |row| entry(row, 0))?;
+        let mut statement = connection.prepare_cached(
+            "SELECT seq, at, body FROM entries WHERE session = ?1 AND seq >= ?2 ORDER BY seq",
+        )?;
+        let from = i64::try_from(seq).unwrap_or(i64::MAX);
+        let entries =
+            statement.query_map(params![session.to_string(), from], |row| entry(row, 0))?;
         Ok(entries.collect::<rusqlite::Result<_>>()?)
     }
 
@@ -190,6 +222,10 @@ impl Store for Sqlite {
             .transpose()
     }
 
+    fn visits(&self) -> &dyn Visits {
+        self
+    }
+
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {
         files::of_session(&self.connection(), session)
     }
@@ -218,9 +254,18 @@ impl Store for Sqlite {
 
     fn rest(&self) -> Result<(), StoreError> {
         let connection = self.connection();
+        connection.execute_batch("PRAGMA optimize")?;
         connection.pragma_update(None, "wal_checkpoint", "TRUNCATE")?;
         Ok(())
     }
+}
+
+/// Whether what failed is that the file could not grow.
+pub(super) fn is_full(error: &rusqlite::Error) -> bool {
+    // A quota or a limit of size is met as a failed write.
+    let met = error.sqlite_error().map(|error| error.extended_code);
+    error.sqlite_error_code() == Some(ErrorCode::DiskFull)
+        || matches!(met, Some(SQLITE_IOERR_WRITE | SQLITE_IOERR_SHMSIZE))
 }
 
 fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {

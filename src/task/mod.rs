@@ -34,6 +34,7 @@ pub use file::{Fault, TaskFile, Unusable};
 #[cfg(feature = "server")]
 pub(crate) use places::Place;
 pub use prior::{PriorText, Rule};
+pub(crate) use reader::is_disruptive;
 pub use reader::{Fields, Malformed};
 pub(crate) use situation::{LONGEST, STEPS};
 pub use situation::{Situation, Source, WorldText};

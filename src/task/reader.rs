@@ -202,7 +202,7 @@ impl<'a> Fields<'a> {
 }
 
 /// Characters that would break a line or turn the direction of what follows.
-fn is_disruptive(c: char) -> bool {
+pub(crate) fn is_disruptive(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}')
 }

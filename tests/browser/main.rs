@@ -11,6 +11,7 @@ mod check;
 mod conflict;
 mod driver;
 mod drives;
+mod hostile;
 mod house;
 mod page;
 mod people;

@@ -11,6 +11,7 @@ use axum::http::{Request, Response, StatusCode};
 use memrep::server::{AppState, app};
 use memrep::store::{
     Entry, InviteKey, Listed, NewFile, SessionId, Sqlite, Store, StoreError, StoredFile, UploadId,
+    Visit, Visits,
 };
 use serde_json::json;
 use tower::ServiceExt;
@@ -44,6 +45,12 @@ fn value(figures: &str, name: &str) -> f64 {
     let found = lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
     let found = found.unwrap_or_else(|| panic!("no {name} in\n{figures}"));
     found.parse().unwrap()
+}
+
+/// The same of what is counted.
+fn whole(figures: &str, name: &str) -> u64 {
+    let value = value(figures, name).to_string();
+    value.parse().unwrap_or_else(|_| panic!("{name}: {value}"))
 }
 
 #[tokio::test]
@@ -85,21 +92,21 @@ async fn figures_count_what_happened_and_name_nobody() {
     }
     site.get("/sessions/00000000000000000000000000000000").await;
     let page = figures(&site).await;
-    assert_eq!(value(&page, "memrep_answers_accepted_total"), 3.0);
+    assert_eq!(whole(&page, "memrep_answers_accepted_total"), 3);
     // The first question, and one after each answer.
-    assert_eq!(value(&page, "memrep_questions_asked_total"), 4.0);
-    assert_eq!(value(&page, "memrep_question_seconds_count"), 4.0);
+    assert_eq!(whole(&page, "memrep_questions_asked_total"), 4);
+    assert_eq!(whole(&page, "memrep_question_seconds_count"), 4);
     // Those, the answers, and the session's beginning, which is not a question's.
-    assert_eq!(value(&page, "memrep_store_append_seconds_count"), 7.0);
-    assert_eq!(value(&page, "memrep_sessions_stored"), 1.0);
-    assert_eq!(value(&page, "memrep_sessions_in_memory"), 2.0);
-    assert_eq!(value(&page, "memrep_queue_length"), 0.0);
+    assert_eq!(whole(&page, "memrep_store_append_seconds_count"), 7);
+    assert_eq!(whole(&page, "memrep_sessions_stored"), 1);
+    assert_eq!(whole(&page, "memrep_sessions_in_memory"), 2);
+    assert_eq!(whole(&page, "memrep_queue_length"), 0);
     assert!(value(&page, "memrep_solver_cpu_seconds_total") > 0.0);
     let answers = "memrep_http_requests_total{method=\"POST\",route=\"/api/v1/sessions/{id}/answers\",status=\"2xx\"}";
-    assert_eq!(value(&page, answers), 3.0);
+    assert_eq!(whole(&page, answers), 3);
     let missing =
         "memrep_http_requests_total{method=\"GET\",route=\"/sessions/{id}\",status=\"4xx\"}";
-    assert_eq!(value(&page, missing), 1.0);
+    assert_eq!(whole(&page, missing), 1);
     assert!(page.ends_with("# EOF\n"));
     assert!(!page.contains(&id), "{page}");
     assert!(value(&page, "process_cpu_seconds_total") > 0.0);
@@ -119,9 +126,9 @@ async fn open_streams_are_counted_while_they_are_open() {
     let stream = site
         .open(Request::get(&live).body(Body::empty()).unwrap())
         .await;
-    assert_eq!(value(&figures(&site).await, "memrep_live_followers"), 1.0);
+    assert_eq!(whole(&figures(&site).await, "memrep_live_followers"), 1);
     drop(stream);
-    assert_eq!(value(&figures(&site).await, "memrep_live_followers"), 0.0);
+    assert_eq!(whole(&figures(&site).await, "memrep_live_followers"), 0);
 }
 
 #[tokio::test]
@@ -171,6 +178,30 @@ impl Ill {
     }
 }
 
+impl Visits for Ill {
+    fn password(&self) -> Result<Option<String>, StoreError> {
+        self.fails()
+    }
+    fn set_password(&self, _: Option<&str>) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn begin_visit(&self, _: &str, _: Option<&str>, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn visit(&self, _: &str) -> Result<Option<Visit>, StoreError> {
+        self.fails()
+    }
+    fn see_visit(&self, _: &str, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn end_visit(&self, _: &str) -> Result<(), StoreError> {
+        self.fails()
+    }
+    fn forget_visits(&self, _: u64) -> Result<(), StoreError> {
+        self.fails()
+    }
+}
+
 impl Store for Ill {
     fn append(&self, _: &SessionId, _: u64, _: &str) -> Result<(), StoreError> {
         self.fails()
@@ -196,6 +227,10 @@ impl Store for Ill {
     fn invited(&self, _: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError> {
         self.fails()
     }
+    fn visits(&self) -> &dyn Visits {
+        self
+    }
+
     fn upload_of(&self, _: &SessionId) -> Result<Option<UploadId>, StoreError> {
         self.fails()
     }

@@ -161,10 +161,10 @@ async fn people_are_blind_to_each_other_and_to_the_session() {
     let site = Site::with_lease(LONG);
     let session = session(&site, 2).await;
     let people = invite(&site, &session, &["Ada", "Bea"]).await;
-    let pages: Vec<String> = people
-        .iter()
-        .map(|path| path.replace("/api/v1", ""))
-        .collect();
+    let mut pages = Vec::new();
+    for path in &people {
+        pages.push(site.enter(&path.replace("/api/v1", "")).await);
+    }
     let question = site.get(&people[0]).await.json();
     say(&site, &people[0], &question, honest(&question)).await;
     let id = session.rsplit('/').next().unwrap();
@@ -237,7 +237,7 @@ async fn a_lease_runs_out() {
         ("answer", honest(&first).to_owned()),
     ];
     let form: Vec<(&str, &str)> = form.iter().map(|(k, v)| (*k, v.as_str())).collect();
-    let page = people[0].replace("/api/v1", "");
+    let page = site.enter(&people[0].replace("/api/v1", "")).await;
     let shown = site.form(&format!("{page}/answers"), &form).await;
     assert_eq!(shown.status, StatusCode::CONFLICT);
     assert!(shown.text.contains("is closed"), "{}", shown.text);
@@ -302,15 +302,22 @@ async fn a_link_ends() {
     let session = session(&site, 1).await;
     let people = invite(&site, &session, &["Ada", "Bea"]).await;
     let owner = format!("{session}/people").replace("/api/v1", "");
+    let entered = site.enter(&people[0].replace("/api/v1", "")).await;
+    assert_eq!(site.get(&entered).await.status, StatusCode::OK);
     let new = site.form(&format!("{owner}/1/link"), &[]).await;
     assert_eq!(new.status, StatusCode::OK, "{}", new.text);
     let path = new.text.split("value=\"/answer/").nth(1).unwrap();
     let path = format!("/answer/{}", path.split('"').next().unwrap());
+    assert_eq!(
+        site.get(&entered).await.status,
+        StatusCode::NOT_FOUND,
+        "the visit ends with the link"
+    );
     let old = site.get(&people[0].replace("/api/v1", "")).await;
     assert_eq!(old.status, StatusCode::NOT_FOUND);
     assert!(old.text.contains("ask whoever sent it"), "{}", old.text);
-    let now = site.get(&path).await;
-    assert_eq!(now.status, StatusCode::OK);
+    let now = site.enter(&path).await;
+    assert_eq!(site.get(&now).await.status, StatusCode::OK);
     assert!(
         !site.get(&owner).await.text.contains(&path),
         "it is shown once"
@@ -318,6 +325,7 @@ async fn a_link_ends() {
     let ended = site.form(&format!("{owner}/1/dismissal"), &[]).await;
     assert_eq!(ended.location(), owner);
     assert_eq!(site.get(&path).await.status, StatusCode::NOT_FOUND);
+    assert_eq!(site.get(&now).await.status, StatusCode::NOT_FOUND);
     let other = site.get(&people[1]).await;
     assert_eq!(other.status, StatusCode::OK, "the others go on");
     for nobody in ["/answer/zz", "/answer/00000000000000000000000000000000"] {
@@ -341,6 +349,7 @@ async fn what_cannot_be_meant_is_refused() {
         ("people", json!({"name": ""}), "name"),
         ("people", json!({"name": " \n"}), "name"),
         ("people", json!({"name": "a\u{0}b"}), "name"),
+        ("people", json!({"name": "a\u{202e}b"}), "name"),
         ("people", json!({"name": long}), "name"),
         ("people/terms", json!({"answers": 0}), "answers"),
         ("people/terms", json!({"answers": 21}), "answers"),
@@ -380,7 +389,7 @@ async fn what_cannot_be_meant_is_refused() {
     );
     let told = site.get(&format!("{session}/people")).await.json();
     assert_eq!(told["people"][0]["answers"], 1, "it counts once");
-    let hostile = "<script>alert(1)</script>\u{202e}";
+    let hostile = "<script>alert(1)</script>'\"{{7*7}}";
     invite(&site, &session, &[hostile]).await;
     let page = site
         .get(&format!("{session}/people").replace("/api/v1", ""))

@@ -29,9 +29,12 @@ fn command(database: &Path, arguments: &[&str]) -> Command {
 
 impl Server {
     fn start(database: &Path) -> Self {
-        let mut child = command(database, &["--addr", "127.0.0.1:0"])
-            .spawn()
-            .unwrap();
+        Self::start_with(database, &[])
+    }
+
+    fn start_with(database: &Path, more: &[&str]) -> Self {
+        let arguments = [&["--addr", "127.0.0.1:0"], more].concat();
+        let mut child = command(database, &arguments).spawn().unwrap();
         let mut line = String::new();
         BufReader::new(child.stdout.as_mut().unwrap())
             .read_line(&mut line)
@@ -43,6 +46,21 @@ impl Server {
             .unwrap_or_else(|| panic!("no address: {line}"))
             .to_owned();
         Self { child, address }
+    }
+
+    /// What comes back to this request, headers and all.
+    fn exchange(&self, head: &str, headers: &str, body: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        let length = body.len();
+        write!(
+            stream,
+            "{head} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {length}\r\n{headers}\r\n{body}",
+            self.address
+        )
+        .unwrap();
+        let mut text = String::new();
+        stream.read_to_string(&mut text).unwrap();
+        text
     }
 
     fn ask(&self, method: &str, path: &str, body: &Value) -> (u16, String) {
@@ -163,9 +181,17 @@ fn what_it_cannot_do_it_says_with_the_way_out() {
     assert!(!other.exists(), "a server that cannot start leaves no file");
     let public = refused(command(&other, &["--addr", "0.0.0.0:0"]));
     assert!(
-        public.contains("no sign-in yet") && public.contains("127.0.0.1"),
+        public.contains("no owner's password") && public.contains("memrep password"),
         "{public}"
     );
+    for proxied in [
+        ["--origin", "https://teach.example.org"].as_slice(),
+        &["--behind-proxy"],
+    ] {
+        let arguments = [&["--addr", "127.0.0.1:0"], proxied].concat();
+        let unlocked = refused(command(&other, &arguments));
+        assert!(unlocked.contains("no owner's password"), "{unlocked}");
+    }
     let text = folder.path().join("notes.txt");
     std::fs::write(
         &text,
@@ -179,4 +205,100 @@ fn what_it_cannot_do_it_says_with_the_way_out() {
     );
     let usage = refused(command(&other, &["--addr", "somewhere"]));
     assert!(usage.contains("--addr"), "{usage}");
+}
+
+/// `memrep password` with this on its standard input.
+fn password(database: &Path, arguments: &[&str], typed: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_memrep"))
+        .arg("password")
+        .args(arguments)
+        .arg("--database")
+        .arg(database)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(typed.as_bytes())
+        .unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_password_is_piped_in_and_opens_the_way_for_other_machines() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = folder.path().join("a.db");
+    for (typed, why) in [("", "fewer than 8"), ("1234567\n", "fewer than 8")] {
+        let refused = password(&database, &[], typed);
+        assert_eq!(refused.status.code(), Some(2));
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert!(told.contains(why), "{told}");
+    }
+    let set = password(&database, &[], "correct horse battery\n");
+    assert!(
+        set.status.success(),
+        "{}",
+        String::from_utf8_lossy(&set.stderr)
+    );
+    let origin = ["--origin", "https://teach.example.org"];
+    let server = Server::start_with(&database, &origin);
+    let (status, _) = server.ask("GET", "/api/v1/sessions", &Value::Null);
+    assert_eq!(status, 401);
+    // Removed while the server is public, it is closed rather than open.
+    assert!(password(&database, &["--remove"], "").status.success());
+    std::thread::sleep(Duration::from_millis(1100));
+    let (status, body) = server.ask("GET", "/api/v1/sessions", &Value::Null);
+    assert_eq!(status, 403, "{body}");
+    assert!(body.contains("no_password"), "{body}");
+}
+
+#[test]
+fn no_password_and_no_key_is_ever_in_the_log() {
+    const PASSWORD: &str = "correct-horse-battery";
+    const WRONG: &str = "wrong-horse-battery";
+    let folder = tempfile::tempdir().unwrap();
+    let database = folder.path().join("a.db");
+    assert!(password(&database, &[], PASSWORD).status.success());
+    let mut server = Server::start_with(&database, &["--log", "trace"]);
+    let form = "Content-Type: application/x-www-form-urlencoded\r\n";
+    server.exchange("POST /sign-in", form, &format!("password={WRONG}"));
+    let signed = server.exchange("POST /sign-in", form, &format!("password={PASSWORD}"));
+    let cookie = signed
+        .split("set-cookie: memrep=")
+        .nth(1)
+        .expect("a cookie");
+    let key = cookie.split(';').next().unwrap().to_owned();
+    let json = format!("Content-Type: application/json\r\nAuthorization: Bearer {key}\r\n");
+    let last = |reply: &str| -> Value {
+        serde_json::from_str(reply.split_once("\r\n\r\n").unwrap().1)
+            .unwrap_or_else(|error| panic!("{error}: {reply}"))
+    };
+    let made = server.exchange("POST /api/v1/sessions", &json, "{\"task\":\"tomita:4\"}");
+    let id = last(&made)["id"].as_str().unwrap().to_owned();
+    let people = format!("POST /api/v1/sessions/{id}/people");
+    let invited = last(&server.exchange(&people, &json, "{\"name\":\"Ada\"}"));
+    let link = invited["link"].as_str().unwrap();
+    let entered = server.exchange(&format!("POST {link}"), form, "");
+    let theirs = entered
+        .split("set-cookie: memrep-")
+        .nth(1)
+        .expect("a cookie");
+    let theirs = theirs.split(';').next().unwrap().split('=').nth(1).unwrap();
+    server.exchange(&format!("GET /api/v1{link}"), "", "");
+    server.exchange("GET /answer/zz", "", "");
+    server.signal("TERM");
+    server.child.wait().unwrap();
+    let mut log = String::new();
+    let mut told = server.child.stderr.take().unwrap();
+    told.read_to_string(&mut log).unwrap();
+    assert!(log.contains("the owner signed in"), "{log}");
+    assert!(log.contains("a sign-in failed"), "{log}");
+    let invitation = link.rsplit('/').next().unwrap();
+    for secret in [PASSWORD, WRONG, &key, theirs, invitation] {
+        assert!(secret.len() > 15 && !log.contains(secret), "{log}");
+    }
 }

@@ -1,7 +1,8 @@
 //! A site over a store, asked without a network.
 
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use axum::Router;
@@ -12,9 +13,10 @@ use memrep::store::{Sqlite, Store};
 use serde_json::Value;
 use tower::ServiceExt;
 
-/// The whole site.
+/// The whole site, as one browser sees it, which keeps cookies.
 pub(crate) struct Site {
     router: Router,
+    cookies: Mutex<BTreeMap<String, String>>,
 }
 
 /// What came back.
@@ -81,9 +83,7 @@ impl Site {
     /// One where each of several people has a question for so long.
     pub(crate) fn with_lease(lease: Duration) -> Self {
         let store = Arc::new(Sqlite::in_memory().unwrap());
-        Self {
-            router: app(AppState::with_lease(store, lease)),
-        }
+        Self::of(AppState::with_lease(store, lease))
     }
 
     fn over(store: Sqlite) -> Self {
@@ -92,9 +92,40 @@ impl Site {
 
     /// One over a store of the test's own.
     pub(crate) fn over_any(store: Arc<dyn Store>) -> Self {
+        Self::of(AppState::new(store))
+    }
+
+    /// One of the test's own.
+    pub(crate) fn of(state: AppState) -> Self {
         Self {
-            router: app(AppState::new(store)),
+            router: app(state),
+            cookies: Mutex::default(),
         }
+    }
+
+    /// The same site in another browser, which has no cookies yet.
+    pub(crate) fn elsewhere(&self) -> Self {
+        Self {
+            router: self.router.clone(),
+            cookies: Mutex::default(),
+        }
+    }
+
+    /// The cookies that this browser has.
+    pub(crate) fn cookies(&self) -> BTreeMap<String, String> {
+        self.cookies.lock().unwrap().clone()
+    }
+
+    /// Has this browser have these cookies and no others.
+    pub(crate) fn set_cookies(&self, cookies: BTreeMap<String, String>) {
+        *self.cookies.lock().unwrap() = cookies;
+    }
+
+    /// Opens an invitation and presses its button: where the person's pages are.
+    pub(crate) async fn enter(&self, link: &str) -> String {
+        let page = self.get(link).await;
+        assert_eq!(page.status, StatusCode::OK, "{}", page.text);
+        self.form(link, &[]).await.location()
     }
 
     /// What comes back, before its body has.
@@ -102,8 +133,25 @@ impl Site {
         self.router.clone().oneshot(request).await.unwrap()
     }
 
-    pub(crate) async fn send(&self, request: Request<Body>) -> Reply {
+    pub(crate) async fn send(&self, mut request: Request<Body>) -> Reply {
+        let cookies: Vec<String> = (self.cookies().iter())
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
+        if !cookies.is_empty() {
+            let cookies = cookies.join("; ").parse().unwrap();
+            request.headers_mut().insert("cookie", cookies);
+        }
         let response = self.router.clone().oneshot(request).await.unwrap();
+        for kept in response.headers().get_all("set-cookie") {
+            let (cookie, terms) = kept.to_str().unwrap().split_once("; ").unwrap();
+            let (name, value) = cookie.split_once('=').unwrap();
+            let mut cookies = self.cookies.lock().unwrap();
+            if terms.contains("Max-Age=0;") {
+                cookies.remove(name);
+            } else {
+                cookies.insert(name.to_owned(), value.to_owned());
+            }
+        }
         let (parts, body) = response.into_parts();
         let bytes = to_bytes(body, 16 << 20).await.unwrap();
         Reply {

@@ -154,9 +154,8 @@ fn answer_on(address: &str, task: &str, accepted: &Accepted, busy: &AtomicUsize)
             match &question {
                 Some((200, _)) => *accepted.lock().unwrap().entry(id.clone()).or_default() += 1,
                 // The answer is kept, or is to be sent again: who is told so cannot know.
-                Some((503, _)) => return,
+                Some((503, _)) | None => return,
                 Some((status, said)) => panic!("{status}: {said}"),
-                None => return,
             }
         }
     }

@@ -121,7 +121,7 @@ fn brought_up_to_date(file_of_then: &[u8], session: &str, entries_then: usize) {
         .unwrap()
         .pragma_query_value(None, "user_version", |row| row.get(0))
         .unwrap();
-    assert_eq!(version, 3);
+    assert_eq!(version, 4);
     let key = InviteKey::random().unwrap();
     store.invite(&key, &old, 1).unwrap();
     assert_eq!(store.invited(&key).unwrap(), Some((old, 1)));
@@ -279,7 +279,7 @@ fn other_files_are_refused_and_left_as_they_are() {
             "not an SQLite file; name another file with --database",
         ),
         (&foreign, "a database of another program"),
-        (&newer, "version 99, and this memrep reads version 3"),
+        (&newer, "version 99, and this memrep reads version 4"),
     ] {
         let before = std::fs::read(path).unwrap();
         let message = refusal(path);

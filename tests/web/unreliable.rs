@@ -4,6 +4,7 @@ use std::sync::{Condvar, Mutex};
 
 use memrep::store::{
     Entry, InviteKey, Listed, NewFile, SessionId, Sqlite, Store, StoreError, StoredFile, UploadId,
+    Visits,
 };
 
 /// What goes wrong.
@@ -77,6 +78,10 @@ impl Store for Unreliable {
 
     fn invited(&self, key: &InviteKey) -> Result<Option<(SessionId, u32)>, StoreError> {
         self.store.invited(key)
+    }
+
+    fn visits(&self) -> &dyn Visits {
+        self.store.visits()
     }
 
     fn upload_of(&self, session: &SessionId) -> Result<Option<UploadId>, StoreError> {

@@ -35,6 +35,7 @@ pub(super) struct Ledger {
 struct Written {
     waits: Vec<Duration>,
     beginnings: Vec<Duration>,
+    pages: Vec<Duration>,
     errors: BTreeMap<String, u64>,
 }
 
@@ -45,6 +46,10 @@ impl Ledger {
 
     pub(super) fn began(&self, wait: Duration) {
         self.written().beginnings.push(wait);
+    }
+
+    pub(super) fn looked(&self, wait: Duration) {
+        self.written().pages.push(wait);
     }
 
     pub(super) fn ended(&self) {
@@ -117,15 +122,19 @@ impl Crowd {
         }
         let lasted = begun.elapsed();
         let written = std::mem::take(&mut *self.ledger.written());
-        let server = first
-            .zip(last)
-            .and_then(|(first, last)| Some(last.cpu? - first.cpu?));
+        let ends = first.zip(last);
+        let appended = ends
+            .as_ref()
+            .and_then(|(first, last)| last.appended_since(first, 99));
+        let server = ends.and_then(|(first, last)| Some(last.cpu? - first.cpu?));
         let people = process_cpu().saturating_sub(own);
         Met {
             people: self.people,
             lasted,
             waits: written.waits,
             beginnings: written.beginnings,
+            pages: written.pages,
+            appended,
             ended: self.ended() - ended,
             errors: written.errors.into_iter().collect(),
             reconnects: self.reconnects() - reconnects,

@@ -120,6 +120,8 @@ pub struct Figures {
     pub memory: Option<u64>,
     /// The CPU time that it has used, in seconds.
     pub cpu: Option<f64>,
+    /// Of so many seconds at most, so many appends to the store.
+    appends: Vec<(f64, u64)>,
 }
 
 impl Figures {
@@ -133,14 +135,55 @@ impl Figures {
         status.is_success().then(|| Self::read(text))
     }
 
+    /// The bound, of those that the server counts by, which so many percent of the
+    /// appends since then did not exceed.
+    pub(super) fn appended_since(&self, before: &Self, percent: u64) -> Option<f64> {
+        let since = self.appends.iter().zip(&before.appends);
+        let since: Vec<(f64, u64)> = since
+            .map(|(now, then)| (now.0, now.1.saturating_sub(then.1)))
+            .collect();
+        let all = since.last()?.1;
+        let enough = |(_, count): &&(f64, u64)| count * 100 >= all * percent;
+        since
+            .iter()
+            .find(enough)
+            .map(|(bound, _)| *bound)
+            .filter(|_| all > 0)
+    }
+
     fn read(text: &str) -> Self {
         let value = |name: &str| {
             let mut lines = text.lines();
             lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(' '))
         };
+        let buckets = text.lines().filter_map(|line| {
+            let rest = line.strip_prefix("memrep_store_append_seconds_bucket{le=\"")?;
+            let (bound, count) = rest.split_once("\"} ")?;
+            Some((bound.parse().ok()?, count.parse().ok()?))
+        });
         Self {
+            appends: buckets.collect(),
             memory: value("process_resident_memory_bytes").and_then(|v| v.parse().ok()),
             cpu: value("process_cpu_seconds_total").and_then(|v| v.parse().ok()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Figures;
+
+    #[test]
+    fn figures_are_read_and_compared() {
+        let page = |few: u32, all: u32| {
+            Figures::read(&format!(
+                "# HELP x\nprocess_resident_memory_bytes 1024\nprocess_cpu_seconds_total 1.5\nmemrep_store_append_seconds_bucket{{le=\"0.005\"}} {few}\nmemrep_store_append_seconds_bucket{{le=\"0.01\"}} {all}\nmemrep_store_append_seconds_bucket{{le=\"+Inf\"}} {all}\n"
+            ))
+        };
+        let (first, last) = (page(10, 100), page(205, 300));
+        assert_eq!((first.memory, first.cpu), (Some(1024), Some(1.5)));
+        assert_eq!(last.appended_since(&first, 95), Some(0.005));
+        assert_eq!(last.appended_since(&first, 99), Some(0.01));
+        assert_eq!(first.appended_since(&first, 99), None);
     }
 }

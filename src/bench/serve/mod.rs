@@ -42,6 +42,10 @@ pub struct Met {
     pub waits: Vec<Duration>,
     /// From the wish for a session to its first question.
     pub beginnings: Vec<Duration>,
+    /// From asking for a page whose question is there to having it.
+    pub pages: Vec<Duration>,
+    /// So many seconds 99 in a hundred appends took at most, as far as the server tells.
+    pub appended: Option<f64>,
     /// The sessions that were taught to their end.
     pub ended: u64,
     /// What went wrong, by kind.

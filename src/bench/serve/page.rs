@@ -110,7 +110,7 @@ pub fn markdown(report: &Report) -> String {
     );
     let _ = write!(
         page,
-        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. *Put off* is how often somebody was told that the question is still being thought about; their wait goes on. The server is a process of its own on the same machine as the people, and its database a new file.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
+        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. After every fourth answer they look at the session's page, whose question is there already. *Append* is what the server tells of its store: the bound that 99 in a hundred do not exceed. *Put off* is how often somebody was told that the question is still being thought about; their wait goes on. The server is a process of its own on the same machine as the people, and its database a new file.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
         names.join(", "),
         habits.think.as_secs_f64()
     );
@@ -124,6 +124,8 @@ pub fn markdown(report: &Report) -> String {
         "p99",
         "longest",
         "first question p95",
+        "page p95",
+        "append p99",
         "sessions ended",
         "put off",
         "failed",
@@ -163,6 +165,10 @@ fn row(met: &Met) -> Vec<String> {
         ms(met.wait(99)),
         ms(met.longest()),
         ms(first),
+        ms(super::percentile(&met.pages, 95)),
+        met.appended.map_or("–".to_owned(), |seconds| {
+            format!("≤ {}", ms(Duration::from_secs_f64(seconds.min(1e6))))
+        }),
         met.ended.to_string(),
         met.put_off.to_string(),
         met.failed().to_string(),
@@ -237,6 +243,8 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
         "p99_ms",
         "max_ms",
         "begin_p95_ms",
+        "page_p95_ms",
+        "append_p99_ms",
         "begun",
         "ended",
         "failed",
@@ -257,6 +265,9 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
             ms(met.wait(99)),
             ms(met.longest()),
             ms(super::percentile(&met.beginnings, 95)),
+            ms(super::percentile(&met.pages, 95)),
+            met.appended
+                .map_or(String::new(), |seconds| format!("{:.3}", seconds * 1000.0)),
             met.beginnings.len().to_string(),
             met.ended.to_string(),
             met.failed().to_string(),

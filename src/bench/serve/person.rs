@@ -20,6 +20,9 @@ use crate::oracle::{
 /// How often somebody asks again who was told to wait.
 const AGAIN: Duration = Duration::from_millis(200);
 
+/// After so many answers somebody looks at the page.
+const EVERY: u32 = 4;
+
 /// How long somebody lets themselves be put off.
 const LONGEST: Duration = Duration::from_secs(60);
 
@@ -97,6 +100,7 @@ impl Person {
         let first = json!({"kind": "thinking"});
         let mut question = self.settled(&lesson.path, first).await?;
         self.ledger.began(begun.elapsed());
+        let mut answers = 0;
         while let Some(answer) = lesson.answer(&question)? {
             self.think().await;
             if self.ledger.is_over() {
@@ -107,8 +111,25 @@ impl Person {
             let reply = self.patiently(Method::POST, &path, Some(&answer)).await?;
             question = self.settled(&lesson.path, reply).await?;
             self.ledger.waited(asked.elapsed());
+            answers += 1;
+            if answers % EVERY == 0 {
+                self.look(&lesson.path).await?;
+            }
         }
         self.ledger.ended();
+        Ok(())
+    }
+
+    /// Looks at the session's page, whose question is there already.
+    async fn look(&mut self, path: &str) -> Result<(), ClientError> {
+        let page = path.strip_prefix("/api/v1").unwrap_or(path);
+        let asked = Instant::now();
+        let (status, _) = self.client.send(Method::GET, page, None).await?;
+        match status.as_u16() {
+            200 => self.ledger.looked(asked.elapsed()),
+            503 => self.ledger.put_off(),
+            other => return Err(ClientError::Status(other)),
+        }
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! `memrep bench tomita` and the other experiments on how many questions are
 //! asked.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -132,17 +133,14 @@ fn run(plan: Plan, options: &Options) -> anyhow::Result<ExitCode> {
     if let Some(python) = &options.aalpy {
         bench::find_rivals(python).with_context(|| python.display().to_string())?;
     }
-    let threads = usize::from(options.threads.unwrap_or(0));
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .context("cannot start the threads: give fewer by `--threads`")?;
+    let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let threads = options.threads.map_or(cores, |threads| {
+        NonZeroUsize::new(threads.into()).unwrap_or(NonZeroUsize::MIN)
+    });
     let progress = super::bar(bench::size(&plan));
-    let mut runs = pool.install(|| {
-        bench::run(&plan, |run| {
-            progress.set_message(plan.targets[run.target].name().to_owned());
-            progress.inc(1);
-        })
+    let mut runs = bench::run(&plan, threads, |run| {
+        progress.set_message(plan.targets[run.target].name().to_owned());
+        progress.inc(1);
     })?;
     progress.finish_and_clear();
     if let Some(python) = &options.aalpy {
@@ -152,7 +150,7 @@ fn run(plan: Plan, options: &Options) -> anyhow::Result<ExitCode> {
     }
     let command = command(&plan, options);
     let results = Results { plan, runs };
-    let machine = super::machine(pool.current_num_threads());
+    let machine = super::machine(threads.get());
     let file = |extension| {
         options
             .out

@@ -14,7 +14,7 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::Targets;
+use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::{Context, SubscriberExt as _};
 use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt as _;
@@ -28,6 +28,8 @@ use self::queue::{Queue, Writer};
 pub(super) fn start(format: Format, levels: Targets) -> Writer {
     let (queue, writer) = queue::start(format, std::io::stderr());
     let lines = Lines { format, queue };
+    // It tells whole addresses, and in some there are keys; refusals are told by us.
+    let levels = levels.with_target("tower_http::csrf", LevelFilter::OFF);
     tracing_subscriber::registry()
         .with(lines.with_filter(levels))
         .init();

@@ -1,0 +1,155 @@
+//! Whatever people call their tasks, symbols, behaviours and each other: it is text on
+//! every page, and nothing in it runs.
+
+use fantoccini::Client;
+use serde_json::{Value, json};
+
+use crate::driver::{Wishes, with};
+use crate::house::House;
+use crate::page::{fill, press, script, typed};
+
+/// Names that would like to be more. Each would leave a `blink` or set `window.hit`.
+const NAMES: [&str; 8] = [
+    "<script>window.hit=1</script>",
+    "\"><img src=x onerror=window.hit=1><blink>",
+    "' onmouseover='window.hit=1' autofocus onfocus='window.hit=1",
+    "</script></title></textarea><svg onload=window.hit=1><blink>",
+    "javascript:window.hit=1//<blink>&lt;blink&gt;&#60;blink&#62;",
+    "{{7*7}} ${7*7} {% raw %} __import__('os').system('id')",
+    "=HYPERLINK(\"http://127.0.0.1\",\"x\") \\\" \\' `id` $(id) ]]> --> */",
+    "שלום عربى e\u{301}\u{301}\u{301} 👩‍🚀 ﷽",
+];
+
+/// What came of the names on this page; and all its text.
+const LOOK: &str = r#"
+    const bad = [];
+    if (window.hit !== undefined) bad.push("a script ran");
+    for (const element of document.querySelectorAll("*")) {
+        if (element.matches("blink, iframe, object, embed, base, applet, frame")) bad.push(element.outerHTML);
+        if (element.matches("script") && !new URL(element.src, location.href).pathname.startsWith("/static/")) bad.push(element.outerHTML);
+        for (const {name, value} of element.attributes) {
+            if (name.startsWith("on") || name === "style") bad.push(`${name} of ${element.tagName}`);
+            if (["href", "src", "action", "formaction", "xlink:href"].includes(name)
+                && new URL(value, location.href).origin !== location.origin) bad.push(`${name}=${value}`);
+        }
+    }
+    return {bad, text: document.title + " " + document.body.textContent};
+"#;
+
+/// A task with these names, from the `turn`-th on.
+fn words(turn: usize) -> Value {
+    let name = |place: usize| NAMES[(turn + place) % NAMES.len()];
+    json!({
+        "title": name(0),
+        "guidelines": NAMES.join("\n\n"),
+        "empty": name(1),
+        "symbols": [{"name": "a", "word": name(2)}, {"name": "b", "word": name(3)}],
+        "examples": [{"word": ["a", "b"], "label": true}],
+        "practice": {"first": ["a"], "second": ["b", "a"]},
+    })
+}
+
+/// A table whose behaviours have these names.
+fn table() -> Value {
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let rows = NAMES.iter().enumerate().map(|(place, name)| {
+        let labels = [place % 2, usize::from(place > 3)].map(|label| label.to_string());
+        format!("{},{}\n", quoted(name), labels.join(","))
+    });
+    let head = format!("behaviour,{},{}\n", quoted(NAMES[0]), quoted(NAMES[1]));
+    let table = head + &rows.collect::<String>();
+    json!({"title": "Manners", "class": {"kind": "finite", "table": table}})
+}
+
+/// What the API says to a request from the page that is shown.
+async fn call(client: &Client, method: &str, path: &str, body: Value) -> Value {
+    let send = r#"
+        const [method, path, body, done] = arguments;
+        fetch(path, {method, headers: {"content-type": "application/json"}, body: body && JSON.stringify(body)})
+            .then((response) => response.json()).then(done, (error) => done({error: String(error)}));
+    "#;
+    let arguments = vec![method.into(), path.into(), body];
+    client.execute_async(send, arguments).await.unwrap()
+}
+
+/// Nothing came of any name on the page at `path`, and these stand there as they are.
+async fn is_text(client: &Client, house: &House, path: &str, names: &[&str]) {
+    client.goto(&house.at(path)).await.unwrap();
+    let found = script(client, LOOK).await;
+    assert_eq!(found["bad"], json!([]), "{path}");
+    let text = found["text"].as_str().unwrap();
+    for name in names {
+        assert!(text.contains(name), "{name} is not on {path}");
+    }
+}
+
+/// Agrees with everything until the rule is right; every page on the way.
+async fn teach(client: &Client, house: &House, session: &str) {
+    for _ in 0..12 {
+        let api = format!("/api/v1{session}");
+        let question = call(client, "GET", &format!("{api}/question"), Value::Null).await;
+        is_text(client, house, session, &[]).await;
+        is_text(client, house, &format!("{session}/why"), &[]).await;
+        let answer = match question["kind"].as_str().unwrap() {
+            "membership" => "accept",
+            "comparison" => "equal",
+            "equivalence" => "correct",
+            _ => return,
+        };
+        let body = json!({"question": question["number"], "answer": answer});
+        let reply = call(client, "POST", &format!("{api}/answers"), body).await;
+        assert_eq!(reply["error"], Value::Null, "{reply}");
+    }
+    panic!("{session} does not end");
+}
+
+#[tokio::test]
+async fn names_are_text_on_every_page() {
+    with(Wishes::default(), async |browser| {
+        let client = &browser.client;
+        let house = House::build();
+        client.goto(&house.at("/")).await.unwrap();
+        let mut sessions = Vec::new();
+        for task in (0..NAMES.len()).map(words).chain([table()]) {
+            let begun = call(client, "POST", "/api/v1/sessions", json!({"task": task})).await;
+            let id = begun["id"].as_str().unwrap_or_else(|| panic!("{begun}"));
+            sessions.push(format!("/sessions/{id}"));
+        }
+        is_text(client, &house, "/", &NAMES).await;
+        for session in [&sessions[0], &sessions[3], &sessions[8]] {
+            teach(client, &house, session).await;
+            is_text(client, &house, session, &[]).await;
+            is_text(client, &house, &format!("{session}/history"), &[]).await;
+        }
+        for (turn, session) in sessions[..8].iter().enumerate() {
+            let api = format!("/api/v1{session}/people");
+            for name in NAMES.map(|name| name.chars().take(60).collect::<String>()) {
+                let reply = call(client, "POST", &api, json!({"name": name})).await;
+                assert_eq!(reply["error"], Value::Null, "{reply}");
+            }
+            is_text(client, &house, session, &[NAMES[turn]]).await;
+            for part in ["history", "practice", "people"] {
+                let path = format!("{session}/{part}");
+                is_text(client, &house, &path, &[NAMES[turn]]).await;
+            }
+        }
+        // A guest's page, and what a form shows again with its faults.
+        let people = format!("{}/people", sessions[1]);
+        client.goto(&house.at(&people)).await.unwrap();
+        fill(client, "#name", NAMES[2]).await;
+        press(client, ".inviting button").await;
+        let link = typed(client, "input[data-link]").await;
+        let path = link.split_once("/answer/").unwrap().1;
+        is_text(client, &house, &format!("/answer/{path}"), &[]).await;
+        client.goto(&house.at("/")).await.unwrap();
+        press(client, ".uploads summary").await;
+        for name in NAMES {
+            fill(client, "#symbols", name).await;
+            press(client, "#own-task button.primary").await;
+            let found = script(client, LOOK).await;
+            assert_eq!(found["bad"], json!([]), "{name}");
+            assert_eq!(typed(client, "#symbols").await, name);
+        }
+    })
+    .await;
+}
