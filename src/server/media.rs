@@ -24,10 +24,9 @@ use crate::store::{CHUNK, SessionId, Store, StoreError, StoredFile};
 
 /// What was uploaded never changes.
 const KEEP: &str = "private, max-age=31536000, immutable";
-/// An SVG is a picture wherever it is shown, and where somebody opens its address it
-/// is one too: nothing in it runs, and it loads nothing.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
+/// Whoever opens the address of a picture sees that and nothing else, whatever its
+/// bytes pretend to be: nothing in it runs, and it loads nothing.
+const POLICY: &str = "default-src 'none'; frame-ancestors 'none'; sandbox";
 /// Chunks that wait for the network.
 const WAITING: usize = 2;
 
