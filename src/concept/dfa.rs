@@ -51,6 +51,10 @@ impl ConceptClass for DfaClass {
         self.identifier.retract(answer);
     }
 
+    fn forget(&mut self) {
+        self.identifier.forget();
+    }
+
     fn contains(&self, concept: &Dfa, atom: &Word) -> bool {
         concept.accepts(atom)
     }

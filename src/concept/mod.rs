@@ -60,6 +60,10 @@ pub trait ConceptClass {
     /// Takes back all facts of an answer.
     fn retract(&mut self, answer: AnswerId);
 
+    /// Drops what was worked out so far and only makes the next search quicker: how
+    /// far that comes on a budget is then a function of the facts alone.
+    fn forget(&mut self) {}
+
     /// Whether `atom ∈ concept`.
     fn contains(&self, concept: &Self::Concept, atom: &Self::Atom) -> bool;
 

@@ -82,6 +82,12 @@ impl Identifier {
         }
     }
 
+    /// Drops what was proved so far, which only makes the next search quicker.
+    pub fn forget(&mut self) {
+        self.at_least = 1;
+        self.engines = Engines::default();
+    }
+
     /// Up to `count` different automata of the smallest consistent size.
     ///
     /// If there are more, it is a random sample, and a function of the standing

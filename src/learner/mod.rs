@@ -137,8 +137,12 @@ impl<C: ConceptClass> Learner<C> {
         self.seek(&Stop::default())
     }
 
-    /// The same; none, and soon, once `stop` is set.
+    /// The same; none, and soon, once `stop` is set. Even where the budget ends the
+    /// search, nothing shows of what was thought before.
     pub fn next_until(&mut self, stop: &Stop) -> Option<Step<C::Atom, C::Concept>> {
+        if self.next.is_none() {
+            self.class.forget();
+        }
         let step = self.seek(stop);
         if stop.is_set() {
             // It may be a guess, and so may all that came with it.

@@ -41,11 +41,12 @@ pub(crate) async fn observe(State(app): State<AppState>, request: Request, next:
     let (took, status) = (begun.elapsed(), response.status().as_u16());
     span.in_scope(|| {
         let ms = (took.as_secs_f64() * 1e5).round() / 100.0;
-        // Machines ask for these all day.
-        if health::PATHS.contains(&route.as_str()) {
-            tracing::debug!(status, ms, "answered");
-        } else {
+        // Machines ask for these all day, and browsers for what belongs to a page.
+        let is_told = !health::PATHS.contains(&route.as_str()) && !route.starts_with("/static/");
+        if is_told {
             tracing::info!(status, ms, "answered");
+        } else {
+            tracing::debug!(status, ms, "answered");
         }
     });
     app.metrics.answered(&Asked { method, route }, status, took);

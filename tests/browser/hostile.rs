@@ -45,7 +45,7 @@ fn words(turn: usize) -> Value {
         "empty": name(1),
         "symbols": [{"name": "a", "word": name(2)}, {"name": "b", "word": name(3)}],
         "examples": [{"word": ["a", "b"], "label": true}],
-        "practice": {"first": ["a"], "second": ["b", "a"]},
+        "practice": {"first": ["a"], "second": ["b", "a"], "answer": "first", "why": name(4)},
     })
 }
 

@@ -111,11 +111,10 @@ pub(crate) async fn fill(client: &Client, selector: &str, text: &str) {
 
 /// The text that a person reads in what the selector finds.
 pub(crate) async fn texts(client: &Client, selector: &str) -> Vec<String> {
-    let mut texts = Vec::new();
-    for element in client.find_all(Locator::Css(selector)).await.unwrap() {
-        texts.push(element.text().await.unwrap());
-    }
-    texts
+    // In one piece: what is found might be gone before it is read.
+    let read = "return [...document.querySelectorAll(arguments[0])].map((one) => one.checkVisibility() ? one.innerText.trim() : '')";
+    let texts = client.execute(read, vec![selector.into()]).await.unwrap();
+    serde_json::from_value(texts).unwrap()
 }
 
 /// What a field holds now.

@@ -270,7 +270,10 @@ async fn recordings_are_sent_seen_and_taught_by() {
             texts(client, "#recordings-fault").await.pop()
         })
         .await;
-        assert!(fault.starts_with("Line 1, `word[0]`: "), "{fault}");
+        assert!(
+            fault.starts_with("Line 1, column 19, `word[0]`: "),
+            "{fault}"
+        );
         assert_eq!(typed(client, "#title").await, "What I filmed");
         choose(
             client,

@@ -210,6 +210,10 @@ impl ConceptClass for Situated {
         self.learned.retract(answer);
     }
 
+    fn forget(&mut self) {
+        self.learned.forget();
+    }
+
     /// Whether the whole concept has the word.
     fn contains(&self, concept: &Dfa, atom: &Word) -> bool {
         let settled = self.prior.settled(atom);

@@ -57,6 +57,10 @@ impl Reduced {
         }
     }
 
+    pub(super) fn forget(&mut self) {
+        self.class.forget();
+    }
+
     pub(super) fn retract(&mut self, answer: AnswerId) {
         self.facts.retain(|(standing, _)| *standing != Some(answer));
         if !self.rebuild() {
