@@ -352,7 +352,7 @@ async fn recordings_come_in_the_last_step() {
     };
     for (lines, told) in [
         ("", "Choose the file of the recordings"),
-        ("broken\n", "Line 1: expected an object"),
+        ("broken\n", "Line 1, column 1: expected an object"),
     ] {
         let reply = send(lines).await;
         assert_eq!(reply.status, StatusCode::UNPROCESSABLE_ENTITY);

@@ -47,7 +47,10 @@ async fn a_broken_line_among_many_is_named() {
         .as_str()
         .unwrap()
         .to_owned();
-    assert!(message.starts_with("Line 7312, `word[3]`: "), "{message}");
+    assert!(
+        message.starts_with("Line 7312, column 38, `word[3]`: "),
+        "{message}"
+    );
     assert_eq!(rows(&path), 0);
     let reply = Parts::default()
         .task(&binary())
@@ -146,7 +149,10 @@ async fn a_broken_connection_leaves_nothing() {
     let mut heard = String::new();
     stream.read_to_string(&mut heard).unwrap();
     assert!(heard.starts_with("HTTP/1.1 422"), "{heard}");
-    assert!(heard.contains("Line 1: expected an object"), "{heard}");
+    assert!(
+        heard.contains("Line 1, column 1: expected an object"),
+        "{heard}"
+    );
     assert_eq!(rows(&path), 0);
     stop.send(()).unwrap();
     server.await.unwrap().unwrap();

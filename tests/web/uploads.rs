@@ -311,7 +311,7 @@ async fn the_page_takes_recordings_and_tells_faults_at_their_fields() {
             with_files("broken\n"),
             422,
             "recordings",
-            "Line 1: expected an object",
+            "Line 1, column 1: expected an object",
         ),
         (
             with_files(&pictures()).media("more.png", PNG),
