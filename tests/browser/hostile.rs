@@ -12,11 +12,11 @@ use crate::page::{fill, press, script, typed};
 const NAMES: [&str; 8] = [
     "<script>window.hit=1</script>",
     "\"><img src=x onerror=window.hit=1><blink>",
-    "' onmouseover='window.hit=1' autofocus onfocus='window.hit=1",
+    "' onmouseover='hit=1' autofocus onfocus='window.hit=1",
     "</script></title></textarea><svg onload=window.hit=1><blink>",
-    "javascript:window.hit=1//<blink>&lt;blink&gt;&#60;blink&#62;",
+    "javascript:window.hit=1//<blink>&lt;b&gt;&#60;blink&#62;",
     "{{7*7}} ${7*7} {% raw %} __import__('os').system('id')",
-    "=HYPERLINK(\"http://127.0.0.1\",\"x\") \\\" \\' `id` $(id) ]]> --> */",
+    "=HYPERLINK(\"http://127.0.0.1\") \\\" \\' `id` $(id) ]]> --> */",
     "שלום عربى e\u{301}\u{301}\u{301} 👩‍🚀 ﷽",
 ];
 
