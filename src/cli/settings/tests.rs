@@ -1,3 +1,5 @@
+//! Settings from all their sources, as a shell and a file give them.
+
 use std::ffi::OsString;
 use std::path::Path;
 
