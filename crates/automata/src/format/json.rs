@@ -9,7 +9,7 @@
 //! other key is refused by its name, for it may carry a meaning that this
 //! version does not know.
 
-use serde::de::Error as _;
+use serde::de::{Error as _, IgnoredAny};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
@@ -87,10 +87,12 @@ struct File {
 pub fn read(text: &str) -> Result<Document, ReadError> {
     // The version comes first: the keys of another one are not unknown, they
     // are another version's.
-    let value: Value = serde_json::from_str(text).map_err(|e| ReadError::json(&e, HINT))?;
-    check_header(&value).map_err(|e| e.placed_in(text))?;
-    drop(value);
-    // Read again from the text and not from the value, for the sake of places.
+    let json = |error| ReadError::json(&error, HINT);
+    expect_object(text, HINT)?;
+    let header: Header = serde_json::from_str(text).map_err(json)?;
+    header.check().map_err(|e| e.placed_in(text))?;
+    // Read again from the text and not from a value, for the sake of places and of
+    // memory.
     let file: File = serde_json::from_str(text).map_err(|e| ReadError::json(&e, HINT))?;
     Document::try_from(file).map_err(|e| e.placed_in(text))
 }
@@ -104,36 +106,76 @@ pub fn write(document: &Document) -> String {
     text
 }
 
-/// Refuses what is not an object of this format and version.
-fn check_header(value: &Value) -> Result<(), ReadError> {
-    let Value::Object(keys) = value else {
-        let message = format!("expected an object, found {}{HINT}", kind(value));
-        return Err(ReadError::at(1, 1, message));
+/// Refuses what is no JSON, or no object: an array would pass for one with its keys in
+/// order. `hint` says what to do about it.
+pub(super) fn expect_object(text: &str, hint: &str) -> Result<(), ReadError> {
+    let read: Result<IgnoredAny, _> = serde_json::from_str(text);
+    read.map_err(|e| ReadError::json(&e, hint))?;
+    let found = match text.trim_start().bytes().next() {
+        Some(b'{') => return Ok(()),
+        Some(b'[') => "an array",
+        Some(b'"') => "a string",
+        Some(b'n') => "null",
+        Some(b't' | b'f') => "true or false",
+        _ => "a number",
     };
-    let missing = |key: &str| ReadError::field(key, format!("the key is missing{HINT}"));
-    let format = keys.get("format").ok_or_else(|| missing("format"))?;
-    if format != FORMAT {
-        let message = format!("expected \"{FORMAT}\", found {format}{HINT}");
-        return Err(ReadError::field("format", message));
+    let message = format!("expected an object, found {found}{hint}");
+    Err(ReadError::at(1, 1, message))
+}
+
+/// What of a file says of which format and version it is.
+#[derive(Deserialize)]
+struct Header {
+    #[serde(default, deserialize_with = "present")]
+    format: Option<Value>,
+    #[serde(default, deserialize_with = "present")]
+    version: Option<Value>,
+    provenance: Option<Value>,
+}
+
+/// Keeps a `null` that is there apart from a key that is not.
+fn present<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
+    Value::deserialize(deserializer).map(Some)
+}
+
+impl Header {
+    /// Of an object.
+    fn of(value: &Value) -> Self {
+        let key = |key: &str| value.get(key).cloned();
+        Self {
+            format: key("format"),
+            version: key("version"),
+            provenance: key("provenance"),
+        }
     }
-    let version = keys.get("version").ok_or_else(|| missing("version"))?;
-    if version != VERSION {
-        let message = format!(
-            "expected {VERSION}, found {version}: another version of memrep wrote this file, convert it there"
-        );
-        return Err(ReadError::field("version", message));
-    }
-    match keys.get("provenance") {
-        Some(Value::Object(_) | Value::Null) | None => Ok(()),
-        Some(other) => {
-            let message = format!("expected an object, found {}", kind(other));
-            Err(ReadError::field("provenance", message))
+
+    /// Refuses what is not of this format and version.
+    fn check(&self) -> Result<(), ReadError> {
+        let missing = |key: &str| ReadError::field(key, format!("the key is missing{HINT}"));
+        let format = self.format.as_ref().ok_or_else(|| missing("format"))?;
+        if format != FORMAT {
+            let message = format!("expected \"{FORMAT}\", found {format}{HINT}");
+            return Err(ReadError::field("format", message));
+        }
+        let version = self.version.as_ref().ok_or_else(|| missing("version"))?;
+        if version != VERSION {
+            let message = format!(
+                "expected {VERSION}, found {version}: another version of memrep wrote this file, convert it there"
+            );
+            return Err(ReadError::field("version", message));
+        }
+        match &self.provenance {
+            Some(Value::Object(_) | Value::Null) | None => Ok(()),
+            Some(other) => {
+                let message = format!("expected an object, found {}", kind(other));
+                Err(ReadError::field("provenance", message))
+            }
         }
     }
 }
 
 /// What a JSON value is, for people.
-pub(super) fn kind(value: &Value) -> &'static str {
+fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
         Value::Bool(_) => "true or false",
@@ -246,7 +288,11 @@ impl Serialize for Dfa {
 impl<'de> Deserialize<'de> for Dfa {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = Value::deserialize(deserializer)?;
-        check_header(&value).map_err(D::Error::custom)?;
+        if !value.is_object() {
+            let message = format!("expected an object, found {}{HINT}", kind(&value));
+            return Err(D::Error::custom(ReadError::at(1, 1, message)));
+        }
+        Header::of(&value).check().map_err(D::Error::custom)?;
         let file: File = serde_json::from_value(value).map_err(D::Error::custom)?;
         let document = Document::try_from(file).map_err(D::Error::custom)?;
         Ok(document.dfa)

@@ -59,38 +59,39 @@ impl Label {
 pub fn write(sample: &Sample) -> String {
     let alphabet = sample.alphabet();
     let spell = |word: &Word| Some(alphabet.spell(word).map(str::to_owned).collect());
-    let mut lines: Vec<Line> = Vec::new();
+    let mut text = String::new();
+    let mut write = |line: &Line| {
+        text.push_str(&serde_json::to_string(line).expect("strings can always be written"));
+        text.push('\n');
+    };
     if !shows_alphabet(sample) {
-        lines.push(Line {
+        write(&Line {
             alphabet: Some(alphabet.names().map(str::to_owned).collect()),
             ..Line::default()
         });
     }
-    lines.extend(sample.items().iter().map(|item| match item {
-        Item::Label { word, accepted } => Line {
-            word: spell(word),
-            label: Some(Label(Some(*accepted))),
-            ..Line::default()
-        },
-        Item::Unknown { word } => Line {
-            word: spell(word),
-            label: Some(Label(None)),
-            ..Line::default()
-        },
-        Item::Below { worse, better } => Line {
-            worse: spell(worse),
-            better: spell(better),
-            ..Line::default()
-        },
-        Item::Equal { first, second } => Line {
-            equal: [spell(first), spell(second)].into_iter().collect(),
-            ..Line::default()
-        },
-    }));
-    let mut text = String::new();
-    for line in lines {
-        text.push_str(&serde_json::to_string(&line).expect("strings can always be written"));
-        text.push('\n');
+    for item in sample.items() {
+        write(&match item {
+            Item::Label { word, accepted } => Line {
+                word: spell(word),
+                label: Some(Label(Some(*accepted))),
+                ..Line::default()
+            },
+            Item::Unknown { word } => Line {
+                word: spell(word),
+                label: Some(Label(None)),
+                ..Line::default()
+            },
+            Item::Below { worse, better } => Line {
+                worse: spell(worse),
+                better: spell(better),
+                ..Line::default()
+            },
+            Item::Equal { first, second } => Line {
+                equal: [spell(first), spell(second)].into_iter().collect(),
+                ..Line::default()
+            },
+        });
     }
     text
 }

@@ -1,4 +1,5 @@
-//! Cuts DOT text into tokens, each with its place.
+//! Cuts DOT text into tokens, each with its place, as they are asked for: all of them
+//! together would take many times as much memory as the text.
 
 use crate::format::ReadError;
 
@@ -42,19 +43,19 @@ impl Token {
     }
 }
 
-/// Cuts `text` into tokens; the last one is [`Token::End`].
-pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Place)>, ReadError> {
-    let mut cursor = Cursor::new(text);
-    let mut found = Vec::new();
-    loop {
-        cursor.skip_blank()?;
-        let place = cursor.place;
-        let token = cursor.token()?;
-        let end = token == Token::End;
-        found.push((token, place));
-        if end {
-            return Ok(found);
-        }
+/// The tokens of a text, one after the other; the last one, [`Token::End`], again and
+/// again.
+pub(super) struct Tokens<'a>(Cursor<'a>);
+
+impl<'a> Tokens<'a> {
+    pub(super) fn of(text: &'a str) -> Self {
+        Self(Cursor::new(text))
+    }
+
+    pub(super) fn next(&mut self) -> Result<(Token, Place), ReadError> {
+        self.0.skip_blank()?;
+        let place = self.0.place;
+        Ok((self.0.token()?, place))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::lexer::{Place, Token, tokens};
+use super::lexer::{Place, Token, Tokens};
 use crate::format::ReadError;
 use crate::{Alphabet, Dfa};
 
@@ -18,12 +18,16 @@ use crate::{Alphabet, Dfa};
 /// With line and column, if the text is not DOT, or the graph no complete
 /// deterministic automaton.
 pub fn read(text: &str) -> Result<Dfa, ReadError> {
+    let mut tokens = Tokens::of(text);
     let mut parser = Parser {
-        tokens: tokens(text)?,
-        next: 0,
+        next: tokens.next()?,
+        tokens,
+        fault: None,
         graph: Graph::default(),
     };
-    parser.graph()?;
+    let read = parser.graph();
+    // What is no token looks like the end to what comes after.
+    parser.fault.map_or(read, Err)?;
     parser.graph.automaton()
 }
 
@@ -34,23 +38,31 @@ struct Attributes {
     shape: Option<String>,
 }
 
-struct Parser {
-    tokens: Vec<(Token, Place)>,
-    next: usize,
+struct Parser<'a> {
+    tokens: Tokens<'a>,
+    next: (Token, Place),
+    /// The first that is no token, which ends the reading.
+    fault: Option<ReadError>,
     graph: Graph,
 }
 
-impl Parser {
+impl Parser<'_> {
     fn peek(&self) -> (&Token, Place) {
-        let (token, place) = &self.tokens[self.next];
+        let (token, place) = &self.next;
         (token, *place)
     }
 
     fn advance(&mut self) -> (Token, Place) {
-        let found = self.tokens[self.next].clone();
-        // The end stays where it is.
-        self.next = (self.next + 1).min(self.tokens.len() - 1);
-        found
+        let place = self.next.1;
+        let next = match (&self.fault, self.tokens.next()) {
+            (None, Ok(next)) => next,
+            (None, Err(fault)) => {
+                self.fault = Some(fault);
+                (Token::End, place)
+            }
+            (Some(_), _) => (Token::End, place),
+        };
+        std::mem::replace(&mut self.next, next)
     }
 
     fn skips(&mut self, mark: char) -> bool {
@@ -93,7 +105,12 @@ impl Parser {
         if !self.is_keyword("digraph") {
             let (token, place) = self.peek();
             let found = token.describe();
-            return Err(place.error(format!("expected `digraph`, found {found}")));
+            let why = if self.is_keyword("graph") {
+                ": an automaton's edges have a direction"
+            } else {
+                ""
+            };
+            return Err(place.error(format!("expected `digraph`, found {found}{why}")));
         }
         self.advance();
         if matches!(self.peek().0, Token::Name { .. }) {
@@ -191,21 +208,20 @@ impl Parser {
 /// What the text says, before it is known to be an automaton.
 #[derive(Default)]
 struct Graph {
-    numbers: HashMap<String, usize>,
+    numbers: HashMap<String, u32>,
     states: Vec<State>,
     letters: Vec<String>,
-    letter_numbers: HashMap<String, usize>,
-    start: Option<usize>,
+    letter_numbers: HashMap<String, u32>,
+    /// The next state by state and letter, as far as edges were read.
+    next: HashMap<(u32, u32), u32>,
+    start: Option<u32>,
     default_shape: Option<String>,
 }
 
 struct State {
-    name: String,
     /// Where it stands first.
     place: Place,
     accepting: bool,
-    /// The next state by letter, as far as edges were read.
-    next: HashMap<usize, usize>,
 }
 
 /// Whether a node is no state but the arrow that points to the start.
@@ -220,22 +236,20 @@ impl Graph {
         }
         let state = self.state(name, place);
         if let Some(shape) = shape {
-            self.states[state].accepting = shape == "doublecircle";
+            self.states[state as usize].accepting = shape == "doublecircle";
         }
     }
 
     /// The state of this name, new or not.
-    fn state(&mut self, name: &str, place: Place) -> usize {
+    fn state(&mut self, name: &str, place: Place) -> u32 {
         if let Some(&state) = self.numbers.get(name) {
             return state;
         }
-        let state = self.states.len();
+        let state = self.states.len() as u32;
         self.numbers.insert(name.to_owned(), state);
         self.states.push(State {
-            name: name.to_owned(),
             place,
             accepting: self.default_shape.as_deref() == Some("doublecircle"),
-            next: HashMap::new(),
         });
         state
     }
@@ -269,8 +283,8 @@ impl Graph {
         let letter = self.letter(letter, *label_place)?;
         let source = self.state(from, *place);
         let target = self.state(to, *to_place);
-        if self.states[source].next.insert(letter, target).is_some() {
-            let letter = &self.letters[letter];
+        if self.next.insert((source, letter), target).is_some() {
+            let letter = &self.letters[letter as usize];
             return Err(place.error(format!(
                 "state `{from}` has a second edge for `{letter}`: a deterministic automaton has one, remove the other"
             )));
@@ -279,7 +293,7 @@ impl Graph {
     }
 
     /// The number of an edge's letter, new or not.
-    fn letter(&mut self, name: &str, place: Place) -> Result<usize, ReadError> {
+    fn letter(&mut self, name: &str, place: Place) -> Result<u32, ReadError> {
         let name = name.trim();
         if let Some(&number) = self.letter_numbers.get(name) {
             return Ok(number);
@@ -300,7 +314,7 @@ impl Graph {
                 "there are more than {max} different letters: no alphabet is larger"
             )));
         }
-        let number = self.letters.len();
+        let number = self.letters.len() as u32;
         self.letters.push(name.to_owned());
         self.letter_numbers.insert(name.to_owned(), number);
         Ok(number)
@@ -312,16 +326,18 @@ impl Graph {
             top.error("there is no start state: mark it by an edge `__start0 -> s0`")
         })?;
         let mut delta = Vec::with_capacity(self.states.len());
-        for state in &self.states {
+        for (number, state) in (0..).zip(&self.states) {
             let mut row = Vec::with_capacity(self.letters.len());
-            for (letter, name) in self.letters.iter().enumerate() {
-                let target = state.next.get(&letter).ok_or_else(|| {
-                    let from = &state.name;
+            for (letter, name) in (0..).zip(&self.letters) {
+                let target = self.next.get(&(number, letter)).ok_or_else(|| {
+                    let mut names = self.numbers.iter();
+                    let from = names.find(|(_, known)| **known == number);
+                    let from = from.map_or("", |(name, _)| name.as_str());
                     state.place.error(format!(
                         "state `{from}` has no edge for `{name}`, and the automaton must be complete: add `{from} -> … [label=\"{name}\"]`, to a rejecting sink if need be"
                     ))
                 })?;
-                row.push(*target);
+                row.push(*target as usize);
             }
             delta.push(row);
         }
@@ -332,6 +348,7 @@ impl Graph {
             )
         })?;
         // States and letters were numbered above and every row is full.
-        Dfa::new(alphabet, start, accepting, &delta).map_err(|error| top.error(error.to_string()))
+        Dfa::new(alphabet, start as usize, accepting, &delta)
+            .map_err(|error| top.error(error.to_string()))
     }
 }

@@ -1,14 +1,12 @@
 //! Reads JSONL samples line by line.
 
-use std::collections::HashSet;
-
-use serde_json::Value;
+use std::collections::HashMap;
 
 use super::{Label, Line};
 use crate::format::ReadError;
-use crate::format::json::{alphabet_error, kind};
+use crate::format::json::{alphabet_error, expect_object};
 use crate::sample::{Item, Sample};
-use crate::{Alphabet, Word};
+use crate::{Alphabet, Symbol, Word};
 
 /// What to do about a line that is JSON but no item.
 const HINT: &str = r#"; a line is {"word":["a"],"label":true}, {"worse":["a"],"better":["b"]} or {"equal":[["a"],["b"]]}"#;
@@ -61,14 +59,14 @@ fn placed(error: ReadError, text: &str) -> ReadError {
 /// What a line says.
 enum Content {
     Alphabet(Vec<String>),
-    Item(Named),
+    Item(Named<Vec<String>>),
 }
 
-/// An item whose symbols are still names.
-enum Named {
-    Label(Vec<String>, Label),
-    Below(Vec<String>, Vec<String>),
-    Equal(Vec<String>, Vec<String>),
+/// An item whose symbols are still names, or the numbers of names.
+enum Named<W> {
+    Label(W, Label),
+    Below(W, W),
+    Equal(W, W),
 }
 
 impl Content {
@@ -98,19 +96,32 @@ impl Content {
     }
 }
 
-impl Named {
+impl<W> Named<W> {
     /// The words with their places in the line.
-    fn words(&self) -> Vec<(&'static str, &[String])> {
+    fn words(&self) -> Vec<(&'static str, &W)> {
         match self {
             Self::Label(word, _) => vec![("word", word)],
             Self::Below(worse, better) => vec![("worse", worse), ("better", better)],
             Self::Equal(first, second) => vec![("equal[0]", first), ("equal[1]", second)],
         }
     }
+}
 
-    /// The item over its alphabet.
-    fn item(&self, alphabet: &Alphabet) -> Result<Item, ReadError> {
-        let read = |field, names| word(alphabet, field, names);
+impl Named<Vec<String>> {
+    fn numbered(self, names: &mut Names) -> Named<Box<[u32]>> {
+        let mut number = |word: Vec<String>| names.numbers(word);
+        match self {
+            Self::Label(word, label) => Named::Label(number(word), label),
+            Self::Below(worse, better) => Named::Below(number(worse), number(better)),
+            Self::Equal(first, second) => Named::Equal(number(first), number(second)),
+        }
+    }
+}
+
+impl Named<Box<[u32]>> {
+    /// The item, by the symbols of all names.
+    fn item(&self, symbols: &[Result<Symbol, String>]) -> Result<Item, ReadError> {
+        let read = |field, names| word(symbols, field, names);
         Ok(match self {
             Self::Label(names, Label(Some(accepted))) => Item::Label {
                 word: read("word", names)?,
@@ -133,14 +144,35 @@ impl Named {
 
 /// The word of these names; the error has the place of the first that is no
 /// symbol.
-fn word(alphabet: &Alphabet, field: &str, names: &[String]) -> Result<Word, ReadError> {
+fn word(symbols: &[Result<Symbol, String>], field: &str, names: &[u32]) -> Result<Word, ReadError> {
     let symbols = names.iter().enumerate().map(|(place, name)| {
-        alphabet.symbol(name).ok_or_else(|| {
-            let message = format!("expected a symbol of the alphabet {alphabet}, found \"{name}\"");
-            ReadError::field(format!("{field}[{place}]"), message)
-        })
+        let symbol = symbols[*name as usize].clone();
+        symbol.map_err(|message| ReadError::field(format!("{field}[{place}]"), message))
     });
     symbols.collect()
+}
+
+/// The names of symbols, each kept once however often it stands in the file.
+#[derive(Default)]
+struct Names {
+    numbers: HashMap<String, u32>,
+    /// In the order in which they appear.
+    all: Vec<String>,
+}
+
+impl Names {
+    fn numbers(&mut self, word: Vec<String>) -> Box<[u32]> {
+        let number = |name: String| {
+            if let Some(number) = self.numbers.get(&name) {
+                return *number;
+            }
+            let number = self.all.len() as u32;
+            self.all.push(name.clone());
+            self.numbers.insert(name, number);
+            number
+        };
+        word.into_iter().map(number).collect()
+    }
 }
 
 /// A file before its alphabet is known.
@@ -148,7 +180,8 @@ struct File {
     /// The alphabet that the first line names, and that line's number.
     declared: Option<(usize, Alphabet)>,
     /// The items, each with the number of its line.
-    items: Vec<(usize, Named)>,
+    items: Vec<(usize, Named<Box<[u32]>>)>,
+    names: Names,
 }
 
 impl File {
@@ -156,6 +189,7 @@ impl File {
         let mut file = Self {
             declared: None,
             items: Vec::new(),
+            names: Names::default(),
         };
         for (index, line) in text.lines().enumerate() {
             let number = index + 1;
@@ -169,14 +203,12 @@ impl File {
 
     fn line(&mut self, number: usize, text: &str) -> Result<(), ReadError> {
         let json = |error| ReadError::json(&error, HINT);
-        // An array would pass for an object with its keys in order.
-        let value: Value = serde_json::from_str(text).map_err(json)?;
-        if !value.is_object() {
-            let message = format!("expected an object, found {}{HINT}", kind(&value));
-            return Err(ReadError::at(1, 1, message));
-        }
+        expect_object(text, HINT)?;
         match Content::of(serde_json::from_str(text).map_err(json)?)? {
-            Content::Item(item) => self.items.push((number, item)),
+            Content::Item(item) => {
+                let item = item.numbered(&mut self.names);
+                self.items.push((number, item));
+            }
             Content::Alphabet(names) => {
                 if self.declared.is_some() || !self.items.is_empty() {
                     let message = "the alphabet can only be named once, before all words: move it to the first line";
@@ -199,25 +231,15 @@ impl File {
 
     /// The symbols in the order in which they appear.
     fn shown_alphabet(&self) -> Result<Alphabet, ReadError> {
-        let mut names = Vec::new();
-        let mut seen = HashSet::new();
-        for (number, item) in &self.items {
-            for (field, word) in item.words() {
-                for (place, name) in word.iter().enumerate() {
-                    if !seen.insert(name.as_str()) {
-                        continue;
-                    }
-                    // One by one, so that the error has the place of the bad one.
-                    if Alphabet::new([name]).is_err() {
-                        let message = format!(
-                            "expected a symbol, found \"{name}\": use letters, digits and `_` only"
-                        );
-                        let error = ReadError::field(format!("{field}[{place}]"), message);
-                        return Err(error.on_line(*number));
-                    }
-                    names.push(name.as_str());
-                }
-            }
+        let names = &self.names.all;
+        // One by one, so that the error has the place of the bad one.
+        let bad = names.iter().position(|name| Alphabet::new([name]).is_err());
+        if let Some(bad) = bad {
+            let message = format!(
+                "expected a symbol, found \"{}\": use letters, digits and `_` only",
+                names[bad]
+            );
+            return Err(self.first(bad as u32, message));
         }
         if names.is_empty() {
             let message = r#"there is no symbol in this file, so its alphabet is not known: name it in the first line, {"alphabet":["a","b"]}"#;
@@ -226,14 +248,31 @@ impl File {
         Alphabet::new(names).map_err(|error| ReadError::at(1, 1, error.to_string()))
     }
 
+    /// The error where this name stands first.
+    fn first(&self, name: u32, message: String) -> ReadError {
+        for (number, item) in &self.items {
+            for (field, word) in item.words() {
+                if let Some(place) = word.iter().position(|known| *known == name) {
+                    let error = ReadError::field(format!("{field}[{place}]"), message);
+                    return error.on_line(*number);
+                }
+            }
+        }
+        ReadError::at(1, 1, message)
+    }
+
     /// The items over their alphabet.
     fn sample(&self, alphabet: Alphabet) -> Result<Sample, ReadError> {
+        let symbol = |name: &String| {
+            alphabet.symbol(name).ok_or_else(|| {
+                format!("expected a symbol of the alphabet {alphabet}, found \"{name}\"")
+            })
+        };
+        let symbols: Vec<Result<Symbol, String>> = self.names.all.iter().map(symbol).collect();
         let mut sample = Sample::new(alphabet);
         for (number, item) in &self.items {
-            let item = item
-                .item(sample.alphabet())
-                .map_err(|error| error.on_line(*number))?;
-            sample.push(item);
+            let item = item.item(&symbols);
+            sample.push(item.map_err(|error| error.on_line(*number))?);
         }
         Ok(sample)
     }
