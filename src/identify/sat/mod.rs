@@ -8,6 +8,8 @@ mod solver;
 mod varisat;
 
 #[cfg(test)]
+mod cores;
+#[cfg(test)]
 mod tests;
 
 use super::engine::Engine;

@@ -19,7 +19,7 @@ fn engines() -> Engines {
     vec![("varisat", varisat_engine()), ("batsat", batsat_engine())]
 }
 
-fn alphabet(symbols: usize) -> Alphabet {
+pub(super) fn alphabet(symbols: usize) -> Alphabet {
     Alphabet::new((0..symbols).map(|i| format!("s{i}"))).unwrap()
 }
 
@@ -74,7 +74,7 @@ fn random_word(rng: &mut ChaCha8Rng, symbols: usize, longest: usize) -> Word {
         .collect()
 }
 
-fn random_dfa(rng: &mut ChaCha8Rng, symbols: usize, states: usize) -> Dfa {
+pub(super) fn random_dfa(rng: &mut ChaCha8Rng, symbols: usize, states: usize) -> Dfa {
     let rows: Vec<Vec<usize>> = (0..states)
         .map(|_| (0..symbols).map(|_| rng.random_range(0..states)).collect())
         .collect();
@@ -83,7 +83,12 @@ fn random_dfa(rng: &mut ChaCha8Rng, symbols: usize, states: usize) -> Dfa {
 }
 
 /// A fact that is true of the automaton, or with `lies` often not.
-fn random_fact(rng: &mut ChaCha8Rng, dfa: &Dfa, longest: usize, lies: bool) -> Fact<Word> {
+pub(super) fn random_fact(
+    rng: &mut ChaCha8Rng,
+    dfa: &Dfa,
+    longest: usize,
+    lies: bool,
+) -> Fact<Word> {
     let symbols = dfa.alphabet().len();
     let first = random_word(rng, symbols, longest);
     let second = random_word(rng, symbols, longest);
@@ -110,7 +115,7 @@ fn random_fact(rng: &mut ChaCha8Rng, dfa: &Dfa, longest: usize, lies: bool) -> F
     }
 }
 
-fn add_all(problem: &mut Problem, facts: &[Fact<Word>]) -> Vec<FactId> {
+pub(super) fn add_all(problem: &mut Problem, facts: &[Fact<Word>]) -> Vec<FactId> {
     let known = problem.facts().len() as u32;
     let ids = facts
         .iter()
@@ -119,7 +124,7 @@ fn add_all(problem: &mut Problem, facts: &[Fact<Word>]) -> Vec<FactId> {
     ids.collect()
 }
 
-fn search(
+pub(super) fn search(
     engine: &mut dyn Engine,
     problem: &Problem,
     standing: &[FactId],
