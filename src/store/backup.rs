@@ -179,7 +179,7 @@ pub(crate) fn now() -> Result<String, StoreError> {
 }
 
 /// This name, or one made of it that no file has yet.
-pub(crate) fn free_name(name: &str) -> PathBuf {
+fn free_name(name: &str) -> PathBuf {
     let more = (2..).map(|number| PathBuf::from(format!("{name}.{number}")));
     let mut names = std::iter::once(PathBuf::from(name)).chain(more);
     names

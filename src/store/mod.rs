@@ -16,8 +16,8 @@ mod visits;
 
 use std::io::Read;
 
+pub(crate) use backup::now;
 pub use backup::{Checked, back_up, check_backup, restore};
-pub(crate) use backup::{free_name, now};
 pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
 #[cfg(feature = "postgres")]
 pub use postgres::Postgres;
@@ -196,7 +196,17 @@ pub trait Store: Send + Sync {
     ///
     /// [`StoreError::Taken`] if the number is taken; nothing has changed after
     /// any error.
-    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError>;
+    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
+        self.append_all(session, seq, &[body])
+    }
+
+    /// Appends entries that belong together, the first with this number: all of them
+    /// are kept or none, as [`append`](Self::append) keeps one.
+    ///
+    /// # Errors
+    ///
+    /// As [`append`](Self::append) has, for the first of them.
+    fn append_all(&self, session: &SessionId, seq: u64, bodies: &[&str]) -> Result<(), StoreError>;
 
     /// A session's log in order, empty if there is no such session.
     ///

@@ -115,9 +115,9 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
 }
 
 impl Store for Sqlite {
-    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
+    fn append_all(&self, session: &SessionId, seq: u64, bodies: &[&str]) -> Result<(), StoreError> {
         let connect = || self.connection();
-        self.together.append(*session, seq, body, connect)
+        self.together.append(*session, seq, bodies, connect)
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
@@ -274,4 +274,26 @@ fn entry(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<Entry> {
         at: row.get(at + 1)?,
         body: row.get(at + 2)?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What was acknowledged is on the disk, and not only with the operating system.
+    #[test]
+    fn a_commit_in_a_file_is_on_the_disk_before_it_returns() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Sqlite::open(&folder.path().join("a.db")).unwrap();
+        let connection = store.connection();
+        let number = |name: &str| -> i64 {
+            let value = connection.pragma_query_value(None, name, |row| row.get(0));
+            value.unwrap()
+        };
+        let journal = connection.pragma_query_value(None, "journal_mode", |row| row.get(0));
+        assert_eq!(journal, Ok("wal".to_owned()));
+        assert_eq!(number("synchronous"), 2, "FULL");
+        assert_eq!(number("foreign_keys"), 1);
+        assert_eq!(number("busy_timeout"), 5000);
+    }
 }

@@ -16,11 +16,12 @@ pub(super) struct Together {
     waiting: Mutex<Vec<Arc<Wish>>>,
 }
 
-/// An entry that somebody wants to append.
+/// Entries that somebody wants to append, one after the other.
 struct Wish {
     session: SessionId,
+    /// The number of the first.
     seq: u64,
-    body: String,
+    bodies: Vec<String>,
     /// None until somebody has seen to it.
     outcome: Mutex<Option<Outcome>>,
 }
@@ -35,19 +36,19 @@ enum Outcome {
 }
 
 impl Together {
-    /// Appends an entry, as [`Store::append`](super::Store::append) says. `connect`
-    /// waits for the connection.
+    /// Appends entries, as [`Store::append_all`](super::Store::append_all) says.
+    /// `connect` waits for the connection.
     pub(super) fn append<'a>(
         &self,
         session: SessionId,
         seq: u64,
-        body: &str,
+        bodies: &[&str],
         connect: impl FnOnce() -> MutexGuard<'a, Connection>,
     ) -> Result<(), StoreError> {
         let wish = Arc::new(Wish {
             session,
             seq,
-            body: body.to_owned(),
+            bodies: bodies.iter().map(|&body| body.to_owned()).collect(),
             outcome: Mutex::default(),
         });
         self.waiting().push(Arc::clone(&wish));
@@ -116,8 +117,10 @@ fn insert(transaction: &Transaction<'_>, wish: &Wish) -> rusqlite::Result<Outcom
     if wish.seq == 0 {
         transaction.execute("INSERT INTO sessions (id) VALUES (?1)", [&id])?;
     }
-    transaction
-        .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?
-        .execute(params![id, wish.seq.cast_signed(), wish.body])?;
+    let mut append = transaction
+        .prepare_cached("INSERT INTO entries (session, seq, body) VALUES (?1, ?2, ?3)")?;
+    for (body, seq) in wish.bodies.iter().zip(wish.seq..) {
+        append.execute(params![id, seq.cast_signed(), body])?;
+    }
     Ok(Outcome::Kept)
 }

@@ -6,6 +6,7 @@
 #![cfg(all(feature = "postgres", unix))]
 
 mod cluster;
+mod encrypted;
 #[path = "../durability/people.rs"]
 mod people;
 #[path = "../durability/server.rs"]

@@ -3,13 +3,13 @@
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::TcpStream;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
 use crate::cluster::Cluster;
-use crate::people::{Person, compare};
+use crate::people::{Pace, Person, compare, of_environment};
 use crate::server::{Reply, Server, answer, answers_in, ask};
 
 fn begin(server: &Server, task: &str) -> String {
@@ -108,47 +108,92 @@ fn a_page_at_one_server_hears_what_happens_at_the_other(servers: &[Server; 2]) {
 }
 
 /// Half of the people are at a server that is killed again and again, and go on at the
-/// other.
+/// other. `MEMREP_KILLS=200` kills it more often than 12 times.
 #[test]
 fn sessions_of_a_server_that_is_killed_go_on_at_the_other() {
     let cluster = Cluster::start();
     let address = cluster.database("a");
     let steady = Server::over(&address);
     let mut people: Vec<Person> = (0..4).map(|_| Person::default()).collect();
-    let kills = 12;
+    let kills = of_environment("MEMREP_KILLS", 12) as usize;
+    let pace = Pace::default();
     for round in 0..kills {
         let mut doomed = Server::over(&address);
-        let enough = AtomicBool::new(false);
+        pace.enough.store(false, Ordering::Relaxed);
         let places = [doomed.address.clone(), steady.address.clone()];
         std::thread::scope(|scope| {
             for (number, person) in people.iter_mut().enumerate() {
-                let (places, enough) = (&places, &enough);
+                let (places, pace) = (&places, &pace);
                 scope.spawn(move || {
                     // Where the first is gone, the other has the session.
                     let first = (number + round) % 2;
-                    person.teach(&places[first], "tomita:4", enough);
-                    person.teach(&places[1], "tomita:1", enough);
+                    person.teach(&places[first], "tomita:4", pace);
+                    person.teach(&places[1], "tomita:1", pace);
                 });
             }
-            std::thread::sleep(Duration::from_millis(150 + 20 * round as u64));
+            std::thread::sleep(Duration::from_millis(150 + 20 * (round % 12) as u64));
+            pace.wait_for(4 * round + 2, round);
             doomed.kill();
-            std::thread::sleep(Duration::from_millis(100));
-            enough.store(true, Ordering::Relaxed);
+            // The others go on.
+            pace.wait_for(pace.acknowledged() + 2, 0);
+            pace.enough.store(true, Ordering::Relaxed);
         });
     }
-    let done = AtomicBool::new(true);
+    let over = Pace::over();
     for person in &mut people {
-        person.teach(&steady.address, "tomita:1", &done);
+        person.teach(&steady.address, "tomita:1", &over);
     }
     let found = compare(&steady, &people);
     println!(
         "{kills} kills: {} sessions, {} answers acknowledged, all kept once; {} sent again",
         found.sessions, found.acknowledged, found.repeated
     );
-    assert!(found.acknowledged > 20, "too little happened to tell");
+    assert!(
+        found.acknowledged > 4 * (kills - 1),
+        "too little happened to tell"
+    );
     let gaps = "SELECT count(*) FROM (SELECT session FROM entries GROUP BY session
         HAVING max(seq) <> count(*) - 1) AS gaps";
     assert_eq!(cluster.ask("a", gaps), "0");
+}
+
+/// The database itself dies while people answer, with what it had not written yet; what
+/// it had acknowledged is there when it is back. Its own setting would risk that.
+#[test]
+fn a_database_that_dies_amid_writing_has_every_acknowledged_answer_once() {
+    let cluster = Cluster::start_synced();
+    let address = cluster.database("a");
+    cluster.ask("a", "ALTER DATABASE a SET synchronous_commit = off");
+    let server = Server::over(&address);
+    let mut people: Vec<Person> = (0..4).map(|_| Person::default()).collect();
+    let pace = Pace::default();
+    std::thread::scope(|scope| {
+        for person in &mut people {
+            let (place, pace) = (&server.address, &pace);
+            scope.spawn(move || {
+                while !pace.enough.load(Ordering::Relaxed) {
+                    person.teach(place, "tomita:4", pace);
+                    std::thread::sleep(Duration::from_millis(20));
+                }
+            });
+        }
+        pace.wait_for(20, 0);
+        cluster.control(&["stop", "--mode=immediate"]);
+        let before = pace.acknowledged();
+        cluster.control(&["start"]);
+        pace.wait_for(before + 20, 1);
+        pace.enough.store(true, Ordering::Relaxed);
+    });
+    let over = Pace::over();
+    for person in &mut people {
+        person.teach(&server.address, "tomita:4", &over);
+    }
+    let found = compare(&server, &people);
+    println!(
+        "{} sessions, {} answers acknowledged, all kept once; {} sent again",
+        found.sessions, found.acknowledged, found.repeated
+    );
+    assert!(found.acknowledged >= 40, "too little happened to tell");
 }
 
 /// While the database is away that is said; once it is back all goes on, news too.

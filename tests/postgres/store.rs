@@ -19,6 +19,54 @@ fn file<'a>(name: &str, content: &'a [u8]) -> NewFile<'a> {
 }
 
 #[test]
+fn entries_that_belong_together_are_kept_all_or_none() {
+    let cluster = Cluster::start();
+    let store = Postgres::open(&cluster.database("a")).unwrap();
+    let session = id();
+    store.append_all(&session, 0, &["a", "b", "c"]).unwrap();
+    let again = store.append_all(&session, 0, &["x", "y"]);
+    assert!(matches!(again, Err(StoreError::Taken { seq: 0, .. })));
+    let late = store.append_all(&session, 2, &["x", "y", "z"]);
+    assert!(matches!(late, Err(StoreError::Taken { seq: 2, .. })));
+    let early = store.append_all(&session, 4, &["x", "y"]);
+    assert!(matches!(early, Err(StoreError::Gap { seq: 4, .. })));
+    store.append_all(&session, 3, &["d", "e"]).unwrap();
+    let entries = store.read(&session).unwrap();
+    let kept: Vec<(u64, &str)> = entries.iter().map(|e| (e.seq, &*e.body)).collect();
+    assert_eq!(kept, [(0, "a"), (1, "b"), (2, "c"), (3, "d"), (4, "e")]);
+}
+
+/// The database may have been told to acknowledge before the disk has it; a stronger
+/// setting of its own is left.
+#[test]
+fn what_is_acknowledged_is_on_the_disk_whatever_the_database_does_otherwise() {
+    let cluster = Cluster::start();
+    for (own, expected) in [("off", "on"), ("remote_apply", "remote_apply")] {
+        let name = format!("is_{own}");
+        let address = cluster.database(&name);
+        drop(Postgres::open(&address).unwrap());
+        let alter = format!("ALTER DATABASE {name} SET synchronous_commit = {own}");
+        cluster.ask(&name, &alter);
+        // Writes down how every entry is written.
+        cluster.ask(
+            &name,
+            "CREATE TABLE seen (setting TEXT);
+             CREATE FUNCTION look() RETURNS trigger LANGUAGE plpgsql AS
+                 'BEGIN INSERT INTO seen VALUES (current_setting(''synchronous_commit''));
+                  RETURN NEW; END';
+             CREATE TRIGGER look BEFORE INSERT ON entries
+                 FOR EACH ROW EXECUTE FUNCTION look();",
+        );
+        let outside = cluster.ask(&name, "SHOW synchronous_commit");
+        assert_eq!(outside, own, "the database's own setting holds elsewhere");
+        let store = Postgres::open(&address).unwrap();
+        store.append_all(&id(), 0, &["a", "b"]).unwrap();
+        let seen = cluster.ask(&name, "SELECT DISTINCT setting FROM seen");
+        assert_eq!(seen, expected);
+    }
+}
+
+#[test]
 fn what_was_appended_is_kept_once_in_order_and_without_gaps() {
     let cluster = Cluster::start();
     let address = cluster.database("a");

@@ -56,6 +56,21 @@ fn numbers_are_given_once_and_without_gaps() {
 }
 
 #[test]
+fn entries_that_belong_together_are_kept_all_or_none() {
+    let store = Sqlite::in_memory().unwrap();
+    let session = id();
+    store.append_all(&session, 0, &["a", "b", "c"]).unwrap();
+    let late = store.append_all(&session, 2, &["x", "y", "z"]);
+    assert!(matches!(late, Err(StoreError::Taken { seq: 2, .. })));
+    let early = store.append_all(&session, 4, &["x", "y"]);
+    assert!(matches!(early, Err(StoreError::Gap { seq: 4, .. })));
+    store.append_all(&session, 3, &["d", "e"]).unwrap();
+    let entries = store.read(&session).unwrap();
+    let kept: Vec<(u64, &str)> = entries.iter().map(|e| (e.seq, &*e.body)).collect();
+    assert_eq!(kept, [(0, "a"), (1, "b"), (2, "c"), (3, "d"), (4, "e")]);
+}
+
+#[test]
 fn of_writers_that_saw_the_same_one_succeeds() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.db");

@@ -53,6 +53,11 @@ pub(super) fn is_worth_another_try(error: &Error) -> bool {
     }
 }
 
+/// Whether another writer was faster with what is to be there once.
+pub(super) fn is_taken(error: &Error) -> bool {
+    error.code() == Some(&SqlState::UNIQUE_VIOLATION)
+}
+
 fn means_away(code: &SqlState) -> bool {
     // 08: connections; 57P: the server starts or stops.
     code.code().starts_with("08")

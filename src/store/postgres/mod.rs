@@ -23,7 +23,7 @@ use tokio_postgres::types::ToSql;
 
 use self::connect::Door;
 pub(super) use self::fault::told;
-use self::fault::{fault, is_worth_another_try, no_connection};
+use self::fault::{fault, is_taken, is_worth_another_try, no_connection};
 use self::news::Ears;
 use super::{
     Entry, Hear, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId,
@@ -160,27 +160,39 @@ impl Drop for Postgres {
 }
 
 impl Store for Postgres {
-    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
+    fn append_all(&self, session: &SessionId, seq: u64, bodies: &[&str]) -> Result<(), StoreError> {
         let id = session.to_string();
+        // Whether the number is free, the unique key decides for all of them at once.
         let appended = if seq == 0 {
             self.rows(
                 "WITH new AS (INSERT INTO sessions (id) VALUES ($1) ON CONFLICT DO NOTHING RETURNING id)
-                 INSERT INTO entries (session, seq, body) SELECT id, 0, $2::text FROM new RETURNING seq",
-                &[&id, &body],
-            )?
+                 INSERT INTO entries (session, seq, body)
+                 SELECT id, place - 1, body FROM new, unnest($2::text[]) WITH ORDINALITY AS given(body, place)
+                 RETURNING seq",
+                &[&id, &bodies],
+            )
         } else {
             self.rows(
-                "INSERT INTO entries (session, seq, body) SELECT $1::text, $2::bigint, $3::text
+                "INSERT INTO entries (session, seq, body)
+                 SELECT $1::text, $2::bigint + place - 1, body
+                 FROM unnest($3::text[]) WITH ORDINALITY AS given(body, place)
                  WHERE EXISTS (SELECT 1 FROM entries WHERE session = $1 AND seq = $2 - 1)
-                 ON CONFLICT DO NOTHING RETURNING seq",
-                &[&id, &seq.cast_signed(), &body],
-            )?
+                 RETURNING seq",
+                &[&id, &seq.cast_signed(), &bodies],
+            )
         };
-        if appended.is_empty() {
-            return Err(self.refuse(session, seq));
+        match appended {
+            Err(StoreError::Postgres(error)) if is_taken(&error) => Err(StoreError::Taken {
+                session: *session,
+                seq,
+            }),
+            Err(error) => Err(error),
+            Ok(rows) if rows.is_empty() => Err(self.refuse(session, seq)),
+            Ok(rows) => {
+                self.tell(session, seq + rows.len() as u64);
+                Ok(())
+            }
         }
-        self.tell(session, seq + 1);
-        Ok(())
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {
