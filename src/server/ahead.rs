@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::{Semaphore, watch};
 
@@ -24,11 +24,14 @@ pub(crate) struct Trial {
     pub(crate) effects: Vec<Event>,
     /// The session after all of them.
     pub(crate) session: Session,
+    /// How long it took to work that out.
+    pub(crate) took: Duration,
 }
 
 impl Trial {
     /// Where this entry leads; none if it makes no sense here, or nobody wants it.
     fn of(session: &Session, cause: Event, stop: &Stop) -> Option<Self> {
+        let begun = Instant::now();
         let mut session = session.fork();
         session.apply(&cause).ok()?;
         let mut effects = Vec::new();
@@ -40,6 +43,7 @@ impl Trial {
             cause,
             effects,
             session,
+            took: begun.elapsed(),
         })
     }
 }

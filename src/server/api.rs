@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{Path, Query, State};
-use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
@@ -55,12 +55,9 @@ async fn description() -> Response {
 
 /// The JSON of a request.
 pub(crate) fn read_body(body: Body) -> Result<Value, WebError> {
-    let bytes = body.map_err(|rejection| {
-        if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
-            WebError::TooLarge
-        } else {
-            WebError::Unreadable(rejection.body_text())
-        }
+    let bytes = body.map_err(|rejection| match rejection.status() {
+        StatusCode::PAYLOAD_TOO_LARGE => WebError::TooLarge,
+        _ => WebError::unread(&rejection, rejection.body_text()),
     })?;
     forms::json_body(&bytes)
 }
@@ -327,7 +324,8 @@ async fn concept(
 }
 
 async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Response, ApiError> {
-    let entries = app.teaching.log(session_id(&id)?).await?;
+    let id = session_id(&id)?;
+    let entries = app.teaching.log(id).await?;
     let mut lines = String::new();
     for entry in entries {
         // The body is an object: its fields follow the store's own.
@@ -338,5 +336,10 @@ async fn log(State(app): State<AppState>, Path(id): Path<String>) -> Result<Resp
             entry.seq, entry.at
         );
     }
-    Ok(super::typed("application/jsonl; charset=utf-8", lines))
+    let mut file = super::typed("application/jsonl; charset=utf-8", lines);
+    // Not by the task's name: a log that cannot be read is to be had too.
+    let name = format!("attachment; filename=\"memrep-{id}.jsonl\"");
+    let name = HeaderValue::from_str(&name).map_err(WebError::internal)?;
+    file.headers_mut().insert(CONTENT_DISPOSITION, name);
+    Ok(file)
 }

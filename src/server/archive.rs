@@ -67,25 +67,27 @@ impl Archive {
         events.map_err(WebError::Corrupt)
     }
 
-    /// Appends the entries of a trial to the store, and goes on with its session; if
-    /// another writer was faster with the first, reads the session again instead and
-    /// says `false`.
+    /// Appends the entries of a trial to the store, all or none, and goes on with its
+    /// session; if another writer was faster, reads the session again instead and says
+    /// `false`.
     pub(crate) fn adopt(
         &self,
         id: &SessionId,
         session: &mut Session,
         trial: Trial,
     ) -> Result<bool, WebError> {
-        let causes = std::iter::once(&trial.cause);
-        let first = session.entries();
-        for (event, seq) in causes.chain(&trial.effects).zip(first..) {
-            if !self.keep(id, seq, event)? {
-                *session = self.load(id)?;
-                // After the first the answer is there, whoever wrote what follows.
-                return Ok(seq > first);
-            }
+        let Trial {
+            cause,
+            effects,
+            session: then,
+            ..
+        } = trial;
+        let events: Vec<&Event> = std::iter::once(&cause).chain(&effects).collect();
+        if !self.keep(id, session.entries(), &events)? {
+            *session = self.load(id)?;
+            return Ok(false);
         }
-        *session = trial.session;
+        *session = then;
         Ok(true)
     }
 
@@ -97,7 +99,7 @@ impl Archive {
         session: &mut Session,
         event: &Event,
     ) -> Result<bool, WebError> {
-        if self.keep(id, session.entries(), event)? {
+        if self.keep(id, session.entries(), &[event])? {
             session.apply(event).map_err(WebError::Corrupt)?;
             Ok(true)
         } else {
@@ -106,13 +108,15 @@ impl Archive {
         }
     }
 
-    /// Appends an entry to the store; `false` if another writer was faster.
-    fn keep(&self, id: &SessionId, seq: u64, event: &Event) -> Result<bool, WebError> {
-        let body = serde_json::to_string(event).map_err(WebError::internal)?;
+    /// Appends entries to the store, all or none; `false` if another writer was faster.
+    fn keep(&self, id: &SessionId, first: u64, events: &[&Event]) -> Result<bool, WebError> {
+        let bodies: Result<Vec<String>, _> = events.iter().map(serde_json::to_string).collect();
+        let bodies = bodies.map_err(WebError::internal)?;
+        let bodies: Vec<&str> = bodies.iter().map(String::as_str).collect();
         let begun = Instant::now();
-        match self.store.append(id, seq, &body) {
+        match self.store.append_all(id, first, &bodies) {
             Ok(()) => {
-                self.metrics.appended(event, begun.elapsed());
+                self.metrics.appended(events, begun.elapsed());
                 Ok(true)
             }
             Err(StoreError::Taken { .. }) => Ok(false),

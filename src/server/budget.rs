@@ -25,14 +25,14 @@ impl<K: Hash + Eq + Clone> Budget<K> {
         }
     }
 
-    /// Takes one, or says how long to wait for it.
-    pub(crate) fn take(&self, who: &K, now: Instant) -> Result<(), Duration> {
+    /// Takes so many, or none and says how long to wait for them.
+    pub(crate) fn take(&self, who: &K, amount: u32, now: Instant) -> Result<(), Duration> {
         let mut full_at = self.full_at();
         if full_at.len() >= MOST && !full_at.contains_key(who) {
             make_room(&mut full_at, now);
         }
         let full = full_at.get(who).map_or(now, |full| (*full).max(now));
-        let next = full + self.every;
+        let next = full + self.every * amount;
         // An empty bucket is full after `burst` times `every`.
         let over = next.saturating_duration_since(now + self.every * self.burst);
         if over > Duration::ZERO {
@@ -68,35 +68,39 @@ mod tests {
         let budget = Budget::new(10, Duration::from_secs(60));
         let start = Instant::now();
         for _ in 0..10 {
-            assert_eq!(budget.take(&"a", start), Ok(()));
+            assert_eq!(budget.take(&"a", 1, start), Ok(()));
         }
-        assert_eq!(budget.take(&"a", start), Err(Duration::from_secs(60)));
-        assert_eq!(budget.take(&"b", start), Ok(()), "everybody has their own");
+        assert_eq!(budget.take(&"a", 1, start), Err(Duration::from_secs(60)));
+        assert_eq!(
+            budget.take(&"b", 1, start),
+            Ok(()),
+            "everybody has their own"
+        );
         let soon = start + Duration::from_secs(59);
-        assert_eq!(budget.take(&"a", soon), Err(Duration::from_secs(1)));
+        assert_eq!(budget.take(&"a", 1, soon), Err(Duration::from_secs(1)));
         let then = start + Duration::from_secs(60);
-        assert_eq!(budget.take(&"a", then), Ok(()));
-        assert!(budget.take(&"a", then).is_err());
+        assert_eq!(budget.take(&"a", 1, then), Ok(()));
+        assert!(budget.take(&"a", 1, then).is_err());
         let later = start + Duration::from_secs(3600);
         for _ in 0..10 {
             assert_eq!(
-                budget.take(&"a", later),
+                budget.take(&"a", 1, later),
                 Ok(()),
                 "full again, and no fuller"
             );
         }
-        assert!(budget.take(&"a", later).is_err());
+        assert!(budget.take(&"a", 1, later).is_err());
     }
 
     #[test]
     fn however_many_ask_few_are_known_and_those_who_asked_most_stay_known() {
         let budget = Budget::new(3, Duration::from_secs(60));
         let now = Instant::now();
-        while budget.take(&u32::MAX, now).is_ok() {}
+        while budget.take(&u32::MAX, 1, now).is_ok() {}
         for who in 0..3 * MOST as u32 {
-            let _ = budget.take(&who, now);
+            let _ = budget.take(&who, 1, now);
             assert!(budget.full_at().len() <= MOST);
         }
-        assert!(budget.take(&u32::MAX, now).is_err());
+        assert!(budget.take(&u32::MAX, 1, now).is_err());
     }
 }

@@ -22,6 +22,7 @@ pub(crate) struct Desk {
     /// the store's word counts again.
     session: Arc<AsyncMutex<Option<Session>>>,
     waiting: AtomicUsize,
+    unsettled: AtomicUsize,
     stop: Mutex<Stop>,
 }
 
@@ -48,6 +49,17 @@ impl Desk {
         }
     }
 
+    /// Something was sent here, and is neither kept nor refused until the guard goes.
+    pub(crate) fn sent(self: &Arc<Self>) -> Unsettled {
+        self.unsettled.fetch_add(1, Ordering::AcqRel);
+        Unsettled(Arc::clone(self))
+    }
+
+    /// Whether all that was sent here is kept, or refused.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.unsettled.load(Ordering::Acquire) == 0
+    }
+
     fn is_abandoned(&self) -> bool {
         self.waiting.load(Ordering::Acquire) == 0
     }
@@ -58,6 +70,15 @@ impl Desk {
 
     fn stop(&self) -> MutexGuard<'_, Stop> {
         self.stop.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Something that was sent.
+pub(crate) struct Unsettled(Arc<Desk>);
+
+impl Drop for Unsettled {
+    fn drop(&mut self) {
+        self.0.unsettled.fetch_sub(1, Ordering::AcqRel);
     }
 }
 

@@ -137,16 +137,17 @@ pub(crate) fn page(
 ) -> Response {
     let whole = session.whole(learned);
     let again = AgainView::of(session, &view);
+    let rule = RuleView::of(&whole, session, &Marks::default());
     render(&DonePage {
         shell,
         bar,
         notice,
-        rule: RuleView::of(&whole, session, &Marks::default()),
         trace: TraceView::of(&whole, session, view.trace.as_deref()),
         claim: session.claim().map(ClaimView::of),
         effort: Effort::of(session),
         spent: view.spent,
-        files: downloads(id, session),
+        files: downloads(id, session, rule.is_drawn()),
+        rule,
         beyond: (session.beyond()).map(|atom| BehaviourView::of(&atom, session)),
         recorded: matches!(session.world(), Some(World::Pool(_))),
         agreed: session
@@ -160,7 +161,7 @@ pub(crate) fn page(
     })
 }
 
-fn downloads(id: SessionId, session: &Session) -> Vec<Download> {
+fn downloads(id: SessionId, session: &Session, is_drawn: bool) -> Vec<Download> {
     let automaton = |&(format, title, about): &(export::Format, _, _)| Download {
         format: format.name(),
         title,
@@ -168,7 +169,11 @@ fn downloads(id: SessionId, session: &Session) -> Vec<Download> {
         href: format!("/api/v1/sessions/{id}/automaton?format={}", format.name()),
     };
     let rules: Vec<Download> = match session.universe() {
-        Universe::Words { .. } => export::OFFERED.iter().map(automaton).collect(),
+        Universe::Words { .. } => export::OFFERED
+            .iter()
+            .filter(|(format, ..)| is_drawn || *format != export::Format::Svg)
+            .map(automaton)
+            .collect(),
         Universe::Monotone(_) | Universe::Finite(_) | Universe::Linear(_) => vec![Download {
             format: "json",
             title: "JSON",

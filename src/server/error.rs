@@ -1,6 +1,7 @@
 //! What can go wrong with a request: one type, shown as JSON by the API and as
 //! a page by the pages.
 
+use std::error::Error;
 use std::io;
 use std::time::Duration;
 
@@ -9,6 +10,7 @@ use axum::http::header::{RETRY_AFTER, WWW_AUTHENTICATE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
+use tower_http::timeout::TimeoutError;
 
 use super::observe;
 use super::upload::{RECORDINGS, UPLOAD_LIMIT};
@@ -38,6 +40,8 @@ pub(crate) enum WebError {
     TooLarge,
     /// The files that came are too large.
     UploadTooLarge,
+    /// The request's body came too slowly.
+    Late,
     /// The request came from another site.
     Foreign,
     /// Only the owner may have this.
@@ -48,6 +52,8 @@ pub(crate) enum WebError {
     NoPassword,
     /// Too much was asked; in so long there may be more.
     TooMany(Duration),
+    /// Many addresses try to sign in; in so long another may.
+    Besieged(Duration),
     /// No automaton is on show at the moment.
     NoAutomaton,
     /// The session learns no automaton.
@@ -56,6 +62,8 @@ pub(crate) enum WebError {
     TooLargeToShow(String),
     /// The learner is still at work.
     Slow,
+    /// What was sent waits for its turn: it is not kept yet.
+    Waiting,
     /// There is no room for what was to be kept.
     Full(String),
     /// The store is elsewhere, and does not answer.
@@ -63,13 +71,13 @@ pub(crate) enum WebError {
     /// The session's log cannot be read.
     Corrupt(Corrupt),
     /// Something that should not happen.
-    Internal(Box<dyn std::error::Error + Send + Sync>),
+    Internal(Box<dyn Error + Send + Sync>),
 }
 
 impl WebError {
     /// Something that should not happen; but what the store and the disk say of
     /// themselves is told for what it is.
-    pub(crate) fn internal(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+    pub(crate) fn internal(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         let error = error.into();
         match error.downcast_ref::<StoreError>() {
             Some(StoreError::Full { message }) => return Self::Full(message.clone()),
@@ -83,6 +91,18 @@ impl WebError {
             Some(met) if has_no_room(met) => Self::Full(met.to_string()),
             _ => Self::Internal(error),
         }
+    }
+
+    /// Why a body could not be read, of which all else has this message.
+    pub(crate) fn unread(cause: &(dyn Error + 'static), message: impl Into<String>) -> Self {
+        let mut next = Some(cause);
+        while let Some(cause) = next {
+            if cause.is::<TimeoutError>() {
+                return Self::Late;
+            }
+            next = cause.source();
+        }
+        Self::Unreadable(message.into())
     }
 
     /// Whether the session is as it was.
@@ -116,10 +136,11 @@ impl WebError {
             | Self::TooLargeToShow(_) => StatusCode::CONFLICT,
             Self::Unreadable(_) => StatusCode::BAD_REQUEST,
             Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            Self::Late => StatusCode::REQUEST_TIMEOUT,
             Self::Foreign | Self::NoPassword => StatusCode::FORBIDDEN,
             Self::SignIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
-            Self::TooMany(_) => StatusCode::TOO_MANY_REQUESTS,
-            Self::Slow | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
+            Self::TooMany(_) | Self::Besieged(_) => StatusCode::TOO_MANY_REQUESTS,
+            Self::Slow | Self::Waiting | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
             Self::Full(_) => StatusCode::INSUFFICIENT_STORAGE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
         }
@@ -155,15 +176,17 @@ impl WebError {
             Self::Malformed(_) => "malformed",
             Self::Unreadable(_) => "unreadable_body",
             Self::TooLarge | Self::UploadTooLarge => "body_too_large",
+            Self::Late => "body_too_slow",
             Self::Foreign => "cross_site",
             Self::SignIn => "sign_in",
             Self::WrongPassword => "wrong_password",
             Self::NoPassword => "no_password",
-            Self::TooMany(_) => "too_many_requests",
+            Self::TooMany(_) | Self::Besieged(_) => "too_many_requests",
             Self::NoAutomaton => "no_automaton",
             Self::NotAnAutomaton => "not_an_automaton",
             Self::TooLargeToShow(_) => "automaton_too_large",
             Self::Slow => "still_thinking",
+            Self::Waiting => "not_taken_yet",
             Self::Full(_) => "disk_full",
             Self::Away(_) => "store_unreachable",
             Self::Corrupt(_) => "log_unreadable",
@@ -217,6 +240,7 @@ impl WebError {
                 "The files have more than {} MiB in all: leave recordings out, or make their pictures and films smaller.",
                 UPLOAD_LIMIT >> 20
             ),
+            Self::Late => "The request took too long to arrive, and nothing of it was kept: send it again, or less at once.".to_owned(),
             Self::Foreign => {
                 "The request came from another site, so nothing was done: use this site's own pages."
                     .to_owned()
@@ -224,7 +248,8 @@ impl WebError {
             Self::SignIn => "Only the owner of this server may have this: sign in, by `POST /api/v1/sign-in` with the password, and send the token as `Authorization: Bearer`.".to_owned(),
             Self::WrongPassword => "That is not the password: try again.".to_owned(),
             Self::NoPassword => "Other machines can reach this server, and it has no owner's password yet: set one with `memrep password`.".to_owned(),
-            Self::TooMany(wait) => format!("That was too much in a short time: try again in {} seconds.", whole_seconds(*wait)),
+            Self::TooMany(wait) => format!("That was too much in a short time, so it was not done: try again in {} seconds.", whole_seconds(*wait)),
+            Self::Besieged(wait) => format!("Too many addresses try to sign in at the moment: try again in {} seconds, from where you signed in before, or at the machine itself (ssh -L 8080:127.0.0.1:8080 HOST).", whole_seconds(*wait)),
             Self::NoAutomaton => {
                 "No rule is on show at the moment: go on answering, or mend the answers that contradict each other, until one is.".to_owned()
             }
@@ -233,6 +258,10 @@ impl WebError {
             }
             Self::Slow => {
                 "The next question is still being worked out: many rules fit what was said, and they are compared. Your answers are kept: ask again in a moment."
+                    .to_owned()
+            }
+            Self::Waiting => {
+                "What you sent waits for its turn: what was sent to this session before is still being thought about, or the disk is slow. Send it again in a moment: it will count once."
                     .to_owned()
             }
             Self::Full(_) => {
@@ -259,13 +288,14 @@ impl WebError {
         is_ours.then(observe::request_id).flatten()
     }
 
-    fn log(&self) {
+    pub(crate) fn log(&self) {
         match self {
             Self::Internal(cause) => tracing::error!(%cause, "request failed"),
             Self::Full(cause) => tracing::error!(%cause, "no room to keep what was sent"),
             Self::Away(cause) => tracing::error!(%cause, "the store cannot be reached"),
             Self::Corrupt(cause) => tracing::error!(%cause, "log unreadable"),
             Self::Slow => tracing::warn!("a question takes long"),
+            Self::Waiting => tracing::warn!("what was sent waits for its turn"),
             _ => {}
         }
     }
@@ -344,13 +374,13 @@ impl ApiError {
         let mut response = (self.0.status(), Json(body)).into_response();
         let headers = response.headers_mut();
         match self.0 {
-            WebError::Slow => {
+            WebError::Slow | WebError::Waiting => {
                 headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
             }
             WebError::Away(_) => {
                 headers.insert(RETRY_AFTER, HeaderValue::from_static("2"));
             }
-            WebError::TooMany(wait) => {
+            WebError::TooMany(wait) | WebError::Besieged(wait) => {
                 headers.insert(RETRY_AFTER, whole_seconds(wait).into());
             }
             WebError::SignIn => {
@@ -372,7 +402,7 @@ impl IntoResponse for PageError {
     fn into_response(self) -> Response {
         self.0.log();
         let mut response = views::error_page(&self.0);
-        if let WebError::TooMany(wait) = self.0 {
+        if let WebError::TooMany(wait) | WebError::Besieged(wait) = self.0 {
             let wait = whole_seconds(wait).into();
             response.headers_mut().insert(RETRY_AFTER, wait);
         }

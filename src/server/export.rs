@@ -69,10 +69,10 @@ impl Format {
         }
     }
 
-    /// The usual end of a file's name.
+    /// The end of a file's name, which tells formats apart.
     pub(crate) fn extension(self) -> &'static str {
         match self {
-            Self::Dot | Self::DotPeople => "dot",
+            Self::DotPeople => "people.dot",
             other => other.name(),
         }
     }
@@ -113,7 +113,10 @@ pub(crate) fn write(dfa: &Dfa, task: &Task, format: Format) -> Result<String, We
         Format::Dot => dot::write(dfa).map_err(|e| cannot(&e)),
         Format::DotPeople => Ok(dot_people::write(dfa)),
         Format::Hoa => hoa::write(dfa).map_err(|e| cannot(&e)),
-        Format::Svg => draw::document(dfa, &captions(task)).map_err(|e| cannot(&e)),
+        Format::Svg => draw::document(dfa, &captions(task)).map_err(|error| {
+            let remedy = "which the session's page has, or Graphviz with `format=dot-people`";
+            WebError::TooLargeToShow(format!("{error}, {remedy}"))
+        }),
     }
 }
 

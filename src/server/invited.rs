@@ -15,7 +15,7 @@ use super::AppState;
 use super::behaviour::{BehaviourView, Brief};
 use super::error::{PageError, WebError};
 use super::leases::{Leases, Turn};
-use super::owner;
+use super::owner::{self, Seat};
 use super::pages::{Fields, HistoryPage, read_form};
 use super::past::{PastView, RecentView};
 use super::rule::RuleView;
@@ -349,7 +349,7 @@ async fn done(
     decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
 ) -> Result<Response, PageError> {
     match app.teaching.act(guest.session, decide, |_, _| ()).await {
-        Ok(()) | Err(WebError::Slow) => {
+        Ok(()) | Err(WebError::Slow | WebError::Waiting) => {
             app.teaching.leases().release(guest.session, guest.person);
             Ok(Redirect::to(&guest.home()).into_response())
         }
@@ -419,7 +419,9 @@ async fn follow(
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
     let guest = Guest::at(&app, &place, &headers).await?;
-    Ok(live::news(&app, guest.session).await?.into_response())
+    let seat = Seat::Invited { place };
+    let news = live::news(&app, guest.session, headers, seat).await?;
+    Ok(news.into_response())
 }
 
 async fn file(

@@ -6,15 +6,19 @@ use std::convert::Infallible;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::extract::{Path, State};
+use axum::http::HeaderMap;
 use axum::response::IntoResponse;
 use axum::response::sse::{Event, KeepAlive, Sse};
+use tokio::sync::mpsc::channel;
 use tokio::sync::watch;
-use tokio_stream::wrappers::WatchStream;
+use tokio::time::interval;
+use tokio_stream::wrappers::ReceiverStream;
 use tokio_stream::{Stream, StreamExt};
 
 use super::AppState;
 use super::api::session_id;
 use super::error::{ApiError, WebError};
+use super::owner::{self, Seat};
 use crate::session::Session;
 use crate::store::SessionId;
 
@@ -71,22 +75,50 @@ fn set(known: &mut u64, entries: u64) -> bool {
 }
 
 /// `GET /sessions/{id}/live`, and the same of the API: `entries` events, the
-/// first at once, until the reader goes or the server stops.
+/// first at once, until the reader goes or may not stay, or the server stops.
 pub(crate) async fn live(
     State(app): State<AppState>,
     Path(id): Path<String>,
+    headers: HeaderMap,
 ) -> Result<impl IntoResponse, ApiError> {
-    Ok(news(&app, session_id(&id)?).await?)
+    let session = session_id(&id)?;
+    Ok(news(&app, session, headers, Seat::Teacher { session }).await?)
 }
 
-/// News of this session for whoever may have them.
+/// News of this session for whoever sits there and may have them.
 pub(crate) async fn news(
     app: &AppState,
     id: SessionId,
+    headers: HeaderMap,
+    seat: Seat,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>> + use<>>, WebError> {
     let entries = app.teaching.look(id, Session::entries).await?;
-    let news = WatchStream::new(app.teaching.live().follow(id, entries));
-    let events = news.map(|entries| {
+    let mut news = app.teaching.live().follow(id, entries);
+    let (sender, events) = channel(1);
+    let app = app.clone();
+    tokio::spawn(async move {
+        let mut tick = interval(app.limits.stays);
+        // The first is at once, and they have just come in.
+        tick.tick().await;
+        let mut entries = *news.borrow_and_update();
+        while sender.send(entries).await.is_ok() {
+            entries = loop {
+                tokio::select! {
+                    changed = news.changed() => match changed {
+                        Ok(()) => break *news.borrow_and_update(),
+                        Err(_) => return,
+                    },
+                    _ = tick.tick() => {
+                        if !owner::stays(&app, &headers, &seat).await {
+                            return;
+                        }
+                    }
+                    () = sender.closed() => return,
+                }
+            };
+        }
+    });
+    let events = ReceiverStream::new(events).map(|entries| {
         let event = Event::default().event("entries");
         Ok(event.data(entries.to_string()))
     });

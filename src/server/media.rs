@@ -146,21 +146,28 @@ impl Chunks {
     fn of(store: Arc<dyn Store>, file: StoredFile, part: Range<u64>) -> Self {
         let (sender, chunks) = channel(WAITING);
         let left = part.end - part.start;
-        tokio::task::spawn_blocking(move || send(&*store, &file, part, &sender));
+        tokio::spawn(send(store, file, part, sender));
         Self { chunks, left }
     }
 }
 
-fn send(
-    store: &dyn Store,
-    file: &StoredFile,
+/// Whoever reads slowly holds a chunk or two, and no thread.
+async fn send(
+    store: Arc<dyn Store>,
+    file: StoredFile,
     mut part: Range<u64>,
-    to: &Sender<Result<Bytes, StoreError>>,
+    to: Sender<Result<Bytes, StoreError>>,
 ) {
     let chunk = CHUNK as u64;
+    let file = Arc::new(file);
     while part.start < part.end {
         let place = part.start / chunk;
-        let read = store.chunk(file, place).map(|bytes| {
+        let (store, file) = (Arc::clone(&store), Arc::clone(&file));
+        let reading = tokio::task::spawn_blocking(move || store.chunk(&file, place));
+        let Ok(read) = reading.await else {
+            return; // The log has the panic, and the client too few bytes.
+        };
+        let read = read.map(|bytes| {
             let (from, end) = (part.start - place * chunk, part.end - place * chunk);
             let length = bytes.len();
             let within = |at: u64| usize::try_from(at).map_or(length, |at| at.min(length));
@@ -171,7 +178,7 @@ fn send(
         }
         let sent = read.as_ref().map_or(0, |bytes| bytes.len() as u64);
         // Nobody listens any more, or there is nothing more to hear.
-        if to.blocking_send(read).is_err() || sent == 0 {
+        if to.send(read).await.is_err() || sent == 0 {
             return;
         }
         part.start += sent;

@@ -172,7 +172,7 @@ impl Metrics {
             ),
             (
                 "queue_wait",
-                "From a request to the beginning of its work",
+                "Waiting for a session, or for leave to think about it",
                 &self.wait,
             ),
             (
@@ -223,24 +223,24 @@ impl Metrics {
 
     /// It was chosen, and all that belongs to it is kept.
     pub(crate) fn chosen(&self, clock: &Clock) {
-        self.question_time
-            .observe(clock.since.elapsed().as_secs_f64());
-        let cpu = thread_cpu().saturating_sub(clock.cpu);
-        self.thinking_cpu.inc_by(cpu.as_secs_f64());
+        self.question_time.observe(clock.wall.as_secs_f64());
+        self.thinking_cpu.inc_by(clock.cpu.as_secs_f64());
     }
 
-    /// An entry was appended.
-    pub(crate) fn appended(&self, event: &Event, took: Duration) {
+    /// Entries were appended, in one transaction.
+    pub(crate) fn appended(&self, events: &[&Event], took: Duration) {
         self.append.observe(took.as_secs_f64());
-        match event {
-            Event::Answered { .. } | Event::Said { .. } => {
-                self.answers.inc();
+        for event in events {
+            match event {
+                Event::Answered { .. } | Event::Said { .. } => {
+                    self.answers.inc();
+                }
+                Event::Asked { hurried, .. } => {
+                    self.asked.inc();
+                    self.hurried.inc_by(u64::from(*hurried));
+                }
+                _ => {}
             }
-            Event::Asked { hurried, .. } => {
-                self.asked.inc();
-                self.hurried.inc_by(u64::from(*hurried));
-            }
-            _ => {}
         }
     }
 
@@ -291,18 +291,26 @@ impl Wait {
     }
 }
 
-/// When the choice of a question began.
+/// What the choice of a question took, with whatever belongs to it.
+#[derive(Default)]
 pub(crate) struct Clock {
-    since: Instant,
+    wall: Duration,
     cpu: Duration,
 }
 
 impl Clock {
-    pub(crate) fn start() -> Self {
-        Self {
-            since: Instant::now(),
-            cpu: thread_cpu(),
-        }
+    /// Runs a part of it.
+    pub(crate) fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let (begun, cpu) = (Instant::now(), thread_cpu());
+        let result = work();
+        self.wall += begun.elapsed();
+        self.cpu += thread_cpu().saturating_sub(cpu);
+        result
+    }
+
+    /// So long it took, without waiting for a turn.
+    pub(crate) fn wall(&self) -> Duration {
+        self.wall
     }
 }
 

@@ -14,6 +14,7 @@ mod budget;
 mod busy;
 mod chart;
 mod check;
+mod connections;
 mod desks;
 mod done;
 mod drive;
@@ -50,24 +51,25 @@ mod upload;
 mod views;
 mod walk;
 
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::DefaultBodyLimit;
+use axum::body::{Body, HttpBody as _};
+use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
-use axum::middleware::from_fn_with_state;
+use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::csrf::{CsrfLayer, ProtectionError};
-use tower_http::timeout::RequestBodyDeadlineLayer;
+use tower_http::timeout::{DeadlineBody, RequestBodyDeadlineLayer};
 
 use crate::store::Store;
+pub use connections::Limits;
 use error::{ApiError, PageError, WebError};
 use metrics::Metrics;
 pub use owner::{BadPassword, NoOrigin, Origin, Reached, hash_password};
@@ -78,10 +80,10 @@ use teaching::Teaching;
 const FORM_LIMIT: usize = 64 * 1024;
 /// The largest body of an API request: 2 MiB.
 const API_LIMIT: usize = 2 * 1024 * 1024;
-/// How long a body may take to arrive.
-const BODY_DEADLINE: Duration = Duration::from_secs(30);
-/// How long an upload may take to arrive: 64 MiB over a slow line.
-const UPLOAD_DEADLINE: Duration = Duration::from_secs(15 * 60);
+/// Connections to the address of the figures: whoever watches has a few.
+const FIGURES_CONNECTIONS: usize = 64;
+/// So many bodies that are larger than a form's are in memory at the same time.
+const LARGE_AT_ONCE: usize = 16;
 /// How long requests in progress may take to finish once the server stops.
 const FAREWELL: Duration = Duration::from_secs(3);
 
@@ -96,6 +98,9 @@ pub struct AppState {
     door: SharedDoor,
     /// Whether the figures are on an address of their own.
     figures_apart: bool,
+    limits: Limits,
+    /// Whose turn it is to send much at once.
+    large: Arc<Semaphore>,
 }
 
 impl AppState {
@@ -116,7 +121,15 @@ impl AppState {
             probes: Arc::new(Semaphore::new(1)),
             door: Arc::new(Door::new(Reached::default())),
             figures_apart: false,
+            limits: Limits::default(),
+            large: Arc::new(Semaphore::new(LARGE_AT_ONCE)),
         }
+    }
+
+    /// The same, whose connections may ask so much.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
     }
 
     /// The same, reached in this way.
@@ -124,6 +137,16 @@ impl AppState {
     pub fn reached(self, reached: Reached) -> Self {
         Self {
             door: Arc::new(Door::new(reached)),
+            ..self
+        }
+    }
+
+    /// The same, where a session thinks on for so long after the last who waited for it
+    /// has gone.
+    #[must_use]
+    pub fn with_grace(self, grace: Duration) -> Self {
+        Self {
+            teaching: self.teaching.with_grace(grace),
             ..self
         }
     }
@@ -149,14 +172,15 @@ impl AppState {
 
 /// The whole site.
 pub fn app(state: AppState) -> Router {
-    let in_time = RequestBodyDeadlineLayer::new(BODY_DEADLINE);
-    let uploads_in_time = RequestBodyDeadlineLayer::new(UPLOAD_DEADLINE);
+    let in_time = RequestBodyDeadlineLayer::new(state.limits.body);
+    let uploads_in_time = from_fn_with_state(state.clone(), uploads_in_time);
     let new_session = Router::new().route("/sessions", post(upload::create));
     let api = api::routes()
         .merge(people_api::routes())
-        .merge(owner::api_routes())
+        .merge(owner::api_routes().layer(DefaultBodyLimit::max(FORM_LIMIT)))
         .layer(in_time.clone())
         .merge(new_session.layer(uploads_in_time.clone()))
+        .layer(from_fn_with_state(state.clone(), in_turn))
         .fallback(async || ApiError(WebError::NoPage))
         .method_not_allowed_fallback(async || ApiError(WebError::NoMethod))
         .layer(CatchPanicLayer::custom(|panic| {
@@ -174,6 +198,7 @@ pub fn app(state: AppState) -> Router {
         .route("/static/{stamp}/{name}", get(assets::get))
         .layer(in_time)
         .merge(new_session.layer(uploads_in_time))
+        .layer(from_fn_with_state(state.clone(), in_turn))
         .fallback(async |uri: Uri| guard::refuse(uri.path(), WebError::NoPage))
         .method_not_allowed_fallback(async || PageError(WebError::NoMethod))
         .layer(CatchPanicLayer::custom(|panic| {
@@ -195,6 +220,30 @@ pub fn app(state: AppState) -> Router {
         .layer(from_fn_with_state(state, observe::observe))
 }
 
+/// Lets files take longer to arrive than all else that goes to the same routes.
+async fn uploads_in_time(State(app): State<AppState>, request: Request, next: Next) -> Response {
+    let time = if upload::is_multipart(&request) {
+        app.limits.upload
+    } else {
+        app.limits.body
+    };
+    let request = request.map(|body| Body::new(DeadlineBody::new(time, body)));
+    next.run(request).await
+}
+
+/// Lets few bodies that are larger than a form's come at the same time, for they are in
+/// memory as a whole. Files are not.
+async fn in_turn(State(app): State<AppState>, request: Request, next: Next) -> Response {
+    let most = request.body().size_hint().upper();
+    let is_large = most.is_none_or(|most| most > FORM_LIMIT as u64);
+    let _turn = if is_large && !upload::is_multipart(&request) {
+        app.large.acquire().await.ok()
+    } else {
+        None
+    };
+    next.run(request).await
+}
+
 fn panicked(panic: &(dyn std::any::Any + Send)) -> WebError {
     let cause = panic
         .downcast_ref::<String>()
@@ -206,23 +255,18 @@ fn panicked(panic: &(dyn std::any::Any + Send)) -> WebError {
 
 /// Serves the site on `listener` until `shutdown` resolves; requests in
 /// progress then have three seconds to finish.
-///
-/// # Errors
-///
-/// If accepting connections fails.
 pub async fn run(
     listener: TcpListener,
     state: AppState,
     shutdown: impl Future<Output = ()> + Send + 'static,
-) -> std::io::Result<()> {
+) {
     let (stopping, stopped) = tokio::sync::oneshot::channel();
-    let teaching = state.teaching.clone();
-    let app = app(state).into_make_service_with_connect_info::<SocketAddr>();
-    let server = axum::serve(listener, app).with_graceful_shutdown(async move {
+    let (teaching, limits) = (state.teaching.clone(), state.limits);
+    let shutdown = async move {
         shutdown.await;
         teaching.end();
         let _ = stopping.send(());
-    });
+    };
     let farewell = async {
         // An error means that the server ended by itself.
         if stopped.await.is_ok() {
@@ -232,22 +276,27 @@ pub async fn run(
         }
     };
     tokio::select! {
-        result = async { server.await } => result,
+        () = connections::serve(listener, app(state), &limits, shutdown) => {}
         () = farewell => {
             tracing::warn!("stopped with requests unfinished; their sessions go on at the next start");
-            Ok(())
         }
     }
 }
 
 /// Serves `/metrics` and `/healthz` on an address of their own, which whoever chose it
 /// keeps from others.
-///
-/// # Errors
-///
-/// If accepting connections fails.
-pub async fn run_figures(listener: TcpListener, state: AppState) -> std::io::Result<()> {
-    axum::serve(listener, health::apart(state)).await
+pub async fn run_figures(listener: TcpListener, state: AppState) {
+    let limits = Limits {
+        connections: FIGURES_CONNECTIONS,
+        ..state.limits
+    };
+    connections::serve(
+        listener,
+        health::apart(state),
+        &limits,
+        std::future::pending(),
+    )
+    .await;
 }
 
 /// A response whose body is text of this type.

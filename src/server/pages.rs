@@ -56,8 +56,9 @@ pub(crate) fn read_form(fields: Fields) -> Result<Form, WebError> {
         Err(rejection) if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE => {
             Err(WebError::TooLarge)
         }
-        Err(_) => Err(WebError::Unreadable(
-            "the form could not be read: go back and send it again".to_owned(),
+        Err(rejection) => Err(WebError::unread(
+            &rejection,
+            "the form could not be read: go back and send it again",
         )),
     }
 }
@@ -105,7 +106,7 @@ async fn act(
 ) -> Result<Response, PageError> {
     match app.teaching.act(id, decide, |_, _| ()).await {
         // Where the learner takes long, the session's own page does the waiting.
-        Ok(()) | Err(WebError::Slow) => {
+        Ok(()) | Err(WebError::Slow | WebError::Waiting) => {
             Ok(Redirect::to(&format!("/sessions/{id}")).into_response())
         }
         Err(error) if error.is_refusal() => {

@@ -242,6 +242,10 @@ async fn page(
 ) -> Result<Response, WebError> {
     let at_work = app.teaching.leases().at_work(id);
     let alone = alone(app, id).await?;
+    let link = link.map(|(person, path)| {
+        let whole = app.door.whole(&path);
+        (person, whole.unwrap_or(path))
+    });
     let view = move |session: &Session| {
         render(&PeoplePage::of(id, session, &at_work, alone, notice, link))
     };
@@ -378,7 +382,7 @@ async fn wish(
     decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
 ) -> Result<Response, PageError> {
     match app.teaching.act(id, decide, |_, _| ()).await {
-        Ok(()) | Err(WebError::Slow) => {
+        Ok(()) | Err(WebError::Slow | WebError::Waiting) => {
             Ok(Redirect::to(&format!("/sessions/{id}/people")).into_response())
         }
         Err(error) => refused(app, id, error).await,

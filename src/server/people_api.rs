@@ -2,29 +2,33 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Path, State};
+use axum::extract::{DefaultBodyLimit, Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 use serde_json::{Value, json};
 
-use super::AppState;
 use super::api::{Answer, Body, read_body, session_id};
 use super::error::{ApiError, WebError};
 use super::forms;
 use super::invited::{Guest, another, say};
 use super::leases::Turn;
 use super::people::invited;
+use super::{AppState, FORM_LIMIT};
 use crate::session::{Decision, Fields, MAX_ANSWERS, Malformed, Pooling, Position, Session, Terms};
 
 /// All routes, relative to `/api/v1`.
 pub(crate) fn routes() -> Router<AppState> {
+    // Whoever has no key is not to send much before that is seen.
+    let for_them = Router::new()
+        .route("/answer/{key}", get(question).post(answer))
+        .route("/answer/{key}/retractions", post(retract))
+        .layer(DefaultBodyLimit::max(FORM_LIMIT));
     Router::new()
         .route("/sessions/{id}/people", get(people).post(invite))
         .route("/sessions/{id}/people/terms", post(set_terms))
-        .route("/answer/{key}", get(question).post(answer))
-        .route("/answer/{key}/retractions", post(retract))
+        .merge(for_them)
 }
 
 /// The people of a session, as its owner sees them.
@@ -71,7 +75,10 @@ async fn invite(
     let name = fields.get("name").and_then(Value::as_str);
     let name = name.ok_or_else(|| Malformed::new("name", "give the person's name"))?;
     let (person, link) = invited(&app, id, name.to_owned()).await?;
-    let made = json!({"person": person, "link": link});
+    let mut made = json!({"person": person, "link": link});
+    if let Some(whole) = app.door.whole(&link) {
+        made["url"] = whole.into();
+    }
     Ok((StatusCode::CREATED, Json(made)).into_response())
 }
 

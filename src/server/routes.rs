@@ -29,14 +29,33 @@ pub struct Route {
     pub path: &'static str,
     /// Who may use it.
     pub may: May,
+    /// What a request costs of its address's budget for costly work. What is bounded in
+    /// another way costs nothing: answers, of which each question takes one.
+    pub cost: u32,
 }
+
+/// What solves, or draws, or reads a whole log.
+const SOME: u32 = 1;
+/// What begins a session, takes files, or tries a task out.
+const MUCH: u32 = 10;
 
 const READ: &[&str] = &["GET"];
 const WRITE: &[&str] = &["POST"];
 const BOTH: &[&str] = &["GET", "POST"];
 
 const fn route(methods: &'static [&'static str], path: &'static str, may: May) -> Route {
-    Route { methods, path, may }
+    Route {
+        methods,
+        path,
+        may,
+        cost: 0,
+    }
+}
+
+impl Route {
+    const fn costs(self, cost: u32) -> Self {
+        Self { cost, ..self }
+    }
 }
 
 /// All of them.
@@ -54,30 +73,31 @@ pub const ROUTES: &[Route] = &[
     route(BOTH, "/answer/{key}", May::Key),
     route(READ, "/answer/s/{place}", May::Invited),
     route(WRITE, "/answer/s/{place}/answers", May::Invited),
-    route(WRITE, "/answer/s/{place}/retractions", May::Invited),
+    route(WRITE, "/answer/s/{place}/retractions", May::Invited).costs(SOME),
     route(READ, "/answer/s/{place}/history", May::Invited),
     route(BOTH, "/answer/s/{place}/practice", May::Invited),
     route(READ, "/answer/s/{place}/live", May::Invited),
     route(READ, "/answer/s/{place}/media/{*path}", May::Invited),
     // Their API.
     route(BOTH, "/api/v1/answer/{key}", May::Key),
-    route(WRITE, "/api/v1/answer/{key}/retractions", May::Key),
+    route(WRITE, "/api/v1/answer/{key}/retractions", May::Key).costs(SOME),
     // Pages.
     route(READ, "/", May::Owner),
-    route(WRITE, "/sessions", May::Owner),
-    route(BOTH, "/studio", May::Owner),
-    route(WRITE, "/studio/recordings", May::Owner),
+    route(WRITE, "/sessions", May::Owner).costs(MUCH),
+    route(READ, "/studio", May::Owner),
+    route(WRITE, "/studio", May::Owner).costs(MUCH),
+    route(WRITE, "/studio/recordings", May::Owner).costs(MUCH),
     route(READ, "/sessions/{id}", May::Teacher),
     route(WRITE, "/sessions/{id}/answers", May::Teacher),
-    route(WRITE, "/sessions/{id}/retractions", May::Teacher),
-    route(WRITE, "/sessions/{id}/changes", May::Teacher),
-    route(WRITE, "/sessions/{id}/bound", May::Teacher),
-    route(WRITE, "/sessions/{id}/again", May::Owner),
-    route(READ, "/sessions/{id}/history", May::Teacher),
-    route(READ, "/sessions/{id}/why", May::Teacher),
+    route(WRITE, "/sessions/{id}/retractions", May::Teacher).costs(SOME),
+    route(WRITE, "/sessions/{id}/changes", May::Teacher).costs(SOME),
+    route(WRITE, "/sessions/{id}/bound", May::Teacher).costs(SOME),
+    route(WRITE, "/sessions/{id}/again", May::Owner).costs(MUCH),
+    route(READ, "/sessions/{id}/history", May::Teacher).costs(SOME),
+    route(READ, "/sessions/{id}/why", May::Teacher).costs(SOME),
     route(READ, "/sessions/{id}/live", May::Teacher),
     route(BOTH, "/sessions/{id}/practice", May::Teacher),
-    route(READ, "/sessions/{id}/automaton.svg", May::Teacher),
+    route(READ, "/sessions/{id}/automaton.svg", May::Teacher).costs(SOME),
     route(READ, "/sessions/{id}/media/{*path}", May::Teacher),
     route(BOTH, "/sessions/{id}/people", May::Owner),
     route(WRITE, "/sessions/{id}/people/terms", May::Owner),
@@ -88,38 +108,40 @@ pub const ROUTES: &[Route] = &[
         May::Owner,
     ),
     // The API.
-    route(BOTH, "/api/v1/sessions", May::Owner),
+    route(READ, "/api/v1/sessions", May::Owner),
+    route(WRITE, "/api/v1/sessions", May::Owner).costs(MUCH),
     route(READ, "/api/v1/sessions/{id}", May::Teacher),
     route(READ, "/api/v1/sessions/{id}/question", May::Teacher),
-    route(READ, "/api/v1/sessions/{id}/samples", May::Teacher),
+    route(READ, "/api/v1/sessions/{id}/samples", May::Teacher).costs(SOME),
     route(WRITE, "/api/v1/sessions/{id}/answers", May::Teacher),
-    route(WRITE, "/api/v1/sessions/{id}/retractions", May::Teacher),
-    route(WRITE, "/api/v1/sessions/{id}/changes", May::Teacher),
-    route(WRITE, "/api/v1/sessions/{id}/undo", May::Teacher),
-    route(WRITE, "/api/v1/sessions/{id}/bound", May::Teacher),
-    route(READ, "/api/v1/sessions/{id}/automaton", May::Teacher),
-    route(READ, "/api/v1/sessions/{id}/concept", May::Teacher),
-    route(READ, "/api/v1/sessions/{id}/log", May::Teacher),
+    route(WRITE, "/api/v1/sessions/{id}/retractions", May::Teacher).costs(SOME),
+    route(WRITE, "/api/v1/sessions/{id}/changes", May::Teacher).costs(SOME),
+    route(WRITE, "/api/v1/sessions/{id}/undo", May::Teacher).costs(SOME),
+    route(WRITE, "/api/v1/sessions/{id}/bound", May::Teacher).costs(SOME),
+    route(READ, "/api/v1/sessions/{id}/automaton", May::Teacher).costs(SOME),
+    route(READ, "/api/v1/sessions/{id}/concept", May::Teacher).costs(SOME),
+    route(READ, "/api/v1/sessions/{id}/log", May::Teacher).costs(SOME),
     route(READ, "/api/v1/sessions/{id}/live", May::Teacher),
     route(BOTH, "/api/v1/sessions/{id}/people", May::Owner),
     route(WRITE, "/api/v1/sessions/{id}/people/terms", May::Owner),
 ];
 
-/// Who may use this route with this method.
+/// The route of this path, as the router writes it, for this method.
 ///
 /// # Errors
 ///
-/// If the table does not have them.
-pub(crate) fn may(method: &Method, path: &str) -> Result<May, WebError> {
-    let route = ROUTES.iter().find(|route| route.path == path);
-    let route = route.ok_or(WebError::NoPage)?;
+/// If the table does not have it.
+pub(crate) fn find(method: &Method, path: &str) -> Result<&'static Route, WebError> {
     let method = match method.as_str() {
         "HEAD" => "GET",
         other => other,
     };
-    if route.methods.contains(&method) {
-        Ok(route.may)
-    } else {
-        Err(WebError::NoMethod)
+    let mut known = WebError::NoPage;
+    for route in ROUTES.iter().filter(|route| route.path == path) {
+        if route.methods.contains(&method) {
+            return Ok(route);
+        }
+        known = WebError::NoMethod;
     }
+    Err(known)
 }

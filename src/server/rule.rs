@@ -86,6 +86,11 @@ impl RuleView {
         })
     }
 
+    /// Whether there is a drawing of an automaton.
+    pub(crate) fn is_drawn(&self) -> bool {
+        matches!(self, Self::Automaton(view) if view.svg.is_some())
+    }
+
     /// The automaton's table as JSON, for the script that tries words.
     pub(crate) fn machine(&self) -> Option<&str> {
         match self {

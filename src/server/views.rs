@@ -134,7 +134,7 @@ struct ErrorPage {
 /// A page that says what went wrong.
 pub(crate) fn error_page(error: &WebError) -> Response {
     // A person who waits for the learner has met no error.
-    let wait = matches!(error, WebError::Slow);
+    let wait = matches!(error, WebError::Slow | WebError::Waiting);
     let status = if wait {
         StatusCode::ACCEPTED
     } else {
@@ -144,6 +144,8 @@ pub(crate) fn error_page(error: &WebError) -> Response {
         StatusCode::NOT_FOUND => "Nothing here",
         StatusCode::ACCEPTED => "Still thinking",
         StatusCode::INTERNAL_SERVER_ERROR => "That went wrong",
+        StatusCode::TOO_MANY_REQUESTS => "Too much at once",
+        StatusCode::REQUEST_TIMEOUT => "That took too long",
         StatusCode::INSUFFICIENT_STORAGE => "The disk is full",
         StatusCode::SERVICE_UNAVAILABLE => "The database is away",
         _ => "That did not work",
@@ -151,11 +153,12 @@ pub(crate) fn error_page(error: &WebError) -> Response {
     let page = ErrorPage {
         shell: Shell::plain(heading),
         heading,
-        message: if wait {
-            "Your answers are kept. Many rules fit what was said so far, and memrep compares them to find the question that tells most; this one takes longer than others. The page goes on by itself."
-                .to_owned()
-        } else {
-            error.message()
+        message: match error {
+            WebError::Slow => "Your answers are kept. Many rules fit what was said so far, and memrep compares them to find the question that tells most; this one takes longer than others. The page goes on by itself."
+                .to_owned(),
+            WebError::Waiting => "What was sent last waits for its turn: what came before is still being thought about, or the disk is slow. Stay on this page until it goes on by itself."
+                .to_owned(),
+            _ => error.message(),
         },
         request: error.told_by(),
         wait,

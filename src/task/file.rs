@@ -10,6 +10,10 @@ use super::situation::Files;
 use super::universe::{Concept, Universe};
 use super::{Malformed, Task};
 
+/// The largest task file, in bytes: as much as the studio takes. What is parsed takes
+/// many times the memory of its text.
+const LARGEST: usize = 4 << 20;
+
 /// A task with what only a file has.
 #[derive(Clone, Debug)]
 pub struct TaskFile {
@@ -135,7 +139,23 @@ pub(super) fn content(text: &str) -> Result<serde_json::Value, Fault> {
     parsed(text).map(|(value, _)| value)
 }
 
+/// Refuses a text that is too large to be read.
+fn expect_small(text: &str) -> Result<(), Fault> {
+    if text.len() <= LARGEST {
+        return Ok(());
+    }
+    let message = format!(
+        "this has {} bytes, and a task file at most {LARGEST}: keep recordings, tables and automata in files of their own",
+        text.len()
+    );
+    Err(placed(
+        Place { line: 1, column: 1 },
+        Malformed::new("", message),
+    ))
+}
+
 fn parsed(text: &str) -> Result<(serde_json::Value, Places), Fault> {
+    expect_small(text)?;
     places::read(text).map_err(|(place, message)| {
         let place = place.unwrap_or(Place { line: 1, column: 1 });
         placed(place, Malformed::new("", message))
@@ -152,6 +172,7 @@ fn read_toml(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
 }
 
 fn from_json(text: &str, files: Files<'_>) -> Result<TaskFile, Vec<Fault>> {
+    expect_small(text).map_err(|fault| vec![fault])?;
     let value = serde_json::from_str(text).map_err(|error| {
         // An empty text has neither.
         let place = Place {

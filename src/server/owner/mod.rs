@@ -1,16 +1,16 @@
 //! Who may come in: the owner by a password, invited people by their links, everybody
 //! else not at all. Must not know what the pages show.
 
+mod budgets;
 mod cookie;
 mod origin;
 mod password;
 mod sign_in;
 
-use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use axum::extract::{ConnectInfo, MatchedPath, Request, State};
+use axum::extract::{MatchedPath, Request, State};
 use axum::http::header::{AUTHORIZATION, HOST, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, Method};
 use axum::middleware::Next;
@@ -18,12 +18,12 @@ use axum::response::{IntoResponse, Redirect, Response};
 use tokio::sync::Semaphore;
 
 use super::AppState;
-use super::budget::Budget;
 use super::error::WebError;
 use super::guard;
 use super::routes::{self, May};
 use crate::session::Session;
 use crate::store::{SessionId, Store, StoreError, VisitKey, Visitor};
+use budgets::Budgets;
 use cookie::Cookie;
 
 pub use origin::{NoOrigin, Origin};
@@ -70,22 +70,29 @@ pub(crate) struct Door {
     /// Whether there is a password, and when that was looked up.
     locked: Mutex<Option<(Instant, bool)>>,
     checks: Semaphore,
-    sign_ins: Budget<IpAddr>,
+    budgets: Budgets,
 }
 
 impl Door {
     pub(crate) fn new(reached: Reached) -> Self {
         Self {
+            budgets: Budgets::new(reached.behind_proxy),
             reached,
             locked: Mutex::new(None),
             checks: Semaphore::new(CHECKS),
-            sign_ins: Budget::new(10, Duration::from_secs(60)),
         }
     }
 
     /// Whether a `Host` header means this server by one of its addresses.
     pub(crate) fn answers_to(&self, host: &str) -> bool {
         guard::is_own(host) || self.reached.origins.iter().any(|one| one.is_meant_by(host))
+    }
+
+    /// The whole address of a path, as people reach it, if that was said: the first of
+    /// several counts.
+    pub(crate) fn whole(&self, path: &str) -> Option<String> {
+        let origin = self.reached.origins.first()?;
+        Some(format!("{origin}{path}"))
     }
 
     /// Whether any of its addresses is one with TLS.
@@ -98,24 +105,6 @@ impl Door {
         let host = headers.get(HOST).and_then(|host| host.to_str().ok());
         let mut origins = self.reached.origins.iter();
         origins.any(|one| one.is_secure() && host.is_some_and(|host| one.is_meant_by(host)))
-    }
-
-    /// Where a request comes from, as far as it counts for limits: of an IPv6 address
-    /// its network, since one machine has all addresses of that.
-    fn from(&self, peer: Option<SocketAddr>, headers: &HeaderMap) -> IpAddr {
-        let told = headers.get_all("x-forwarded-for").iter().next_back();
-        let told = told
-            .filter(|_| self.reached.behind_proxy)
-            .and_then(|told| told.to_str().ok())
-            .and_then(|told| told.rsplit(',').next()?.trim().parse().ok());
-        let nowhere = IpAddr::from([0, 0, 0, 0]);
-        match told.or(peer.map(|peer| peer.ip())).unwrap_or(nowhere) {
-            IpAddr::V6(address) => match address.to_ipv4_mapped() {
-                Some(address) => IpAddr::V4(address),
-                None => IpAddr::V6((u128::from(address) & (u128::MAX << 64)).into()),
-            },
-            address @ IpAddr::V4(_) => address,
-        }
     }
 
     /// Whether there is a password, as of a moment ago.
@@ -150,8 +139,17 @@ fn now() -> u64 {
     since.map_or(0, |since| since.as_secs())
 }
 
-/// Whose visit has this key, if it goes on; that it does is written down.
-async fn visitor(app: &AppState, key: VisitKey) -> Result<Option<Visitor>, WebError> {
+/// Why somebody is looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    /// They ask for something, which is a sign of life.
+    Asked,
+    /// To see whether they may stay.
+    Glance,
+}
+
+/// Whose visit has this key, if it goes on; that somebody asked is written down.
+async fn visitor(app: &AppState, key: VisitKey, look: Look) -> Result<Option<Visitor>, WebError> {
     ask(app, move |store| {
         let (visits, digest, now) = (store.visits(), key.digest(), now());
         let Some(visit) = visits.visit(&digest)? else {
@@ -166,7 +164,7 @@ async fn visitor(app: &AppState, key: VisitKey) -> Result<Option<Visitor>, WebEr
             visits.end_visit(&digest)?;
             return Ok(None);
         }
-        if idle >= SEEN_EVERY {
+        if look == Look::Asked && idle >= SEEN_EVERY {
             visits.see_visit(&digest, now)?;
         }
         Ok(Some(visit.visitor))
@@ -202,7 +200,7 @@ enum Stands {
     Unlocked,
 }
 
-async fn stands(app: &AppState, headers: &HeaderMap) -> Result<Stands, WebError> {
+async fn stands(app: &AppState, headers: &HeaderMap, look: Look) -> Result<Stands, WebError> {
     if !app.door.is_locked(app).await? {
         return Ok(if app.door.reached.is_public {
             Stands::Unlocked
@@ -211,14 +209,19 @@ async fn stands(app: &AppState, headers: &HeaderMap) -> Result<Stands, WebError>
         });
     }
     let owner = match owners_key(app, headers) {
-        Some(key) => visitor(app, key).await? == Some(Visitor::Owner),
+        Some(key) => visitor(app, key, look).await? == Some(Visitor::Owner),
         None => false,
     };
     Ok(if owner { Stands::In } else { Stands::Out })
 }
 
 /// Whether one of the browser's invitations gives this session to its person alone.
-async fn teaches_alone(app: &AppState, headers: &HeaderMap, path: &str) -> Result<bool, WebError> {
+async fn teaches_alone(
+    app: &AppState,
+    headers: &HeaderMap,
+    path: &str,
+    look: Look,
+) -> Result<bool, WebError> {
     let mut parts = path.split('/').skip_while(|part| *part != "sessions");
     let id: Option<SessionId> = parts.nth(1).and_then(|id| id.parse().ok());
     let Some(id) = id.map(|id| id.to_string()) else {
@@ -227,7 +230,7 @@ async fn teaches_alone(app: &AppState, headers: &HeaderMap, path: &str) -> Resul
     for key in cookie::invited(headers, app.door.is_secure(headers)) {
         let Some(Visitor::Invited {
             session, person, ..
-        }) = visitor(app, key).await?
+        }) = visitor(app, key, look).await?
         else {
             continue;
         };
@@ -251,28 +254,68 @@ pub(crate) async fn admit(State(app): State<AppState>, request: Request, next: N
         // Nothing is there: the handler for that says so.
         return next.run(request).await;
     };
-    let may = match routes::may(request.method(), route.as_str()) {
-        Ok(May::Anyone | May::Key | May::Invited) => return next.run(request).await,
-        Ok(may) => may,
+    let route = match routes::find(request.method(), route.as_str()) {
+        Ok(route) => route,
         Err(error) => return guard::refuse(&path, error),
     };
     let headers = request.headers();
-    let refused = match stands(&app, headers).await {
-        Ok(Stands::In) => None,
-        Ok(Stands::Unlocked) => Some(WebError::NoPassword),
-        Ok(Stands::Out) if may == May::Teacher => match teaches_alone(&app, headers, &path).await {
-            Ok(true) => None,
-            Ok(false) => Some(WebError::SignIn),
-            Err(error) => Some(error),
-        },
-        Ok(Stands::Out) => Some(WebError::SignIn),
-        Err(error) => Some(error),
+    let admitted = match route.may {
+        // The handler looks at what they hold.
+        May::Anyone | May::Key | May::Invited => Ok(()),
+        may => comes_in(&app, headers, &path, may, Look::Asked).await,
     };
-    match refused {
-        None => next.run(request).await,
-        Some(WebError::SignIn) if !guard::is_api(&path) => to_sign_in(request.method(), &request),
-        Some(error) => guard::refuse(&path, error),
+    let budgets = &app.door.budgets;
+    match admitted.and_then(|()| budgets.spend(budgets.whence(&request), route.cost)) {
+        Ok(()) => next.run(request).await,
+        Err(WebError::SignIn) if !guard::is_api(&path) => to_sign_in(request.method(), &request),
+        Err(error) => guard::refuse(&path, error),
     }
+}
+
+/// Whether whoever asks is the owner, or has the session of this path to themselves
+/// where that is enough.
+async fn comes_in(
+    app: &AppState,
+    headers: &HeaderMap,
+    path: &str,
+    may: May,
+    look: Look,
+) -> Result<(), WebError> {
+    match stands(app, headers, look).await? {
+        Stands::In => Ok(()),
+        Stands::Unlocked => Err(WebError::NoPassword),
+        Stands::Out if may == May::Teacher && teaches_alone(app, headers, path, look).await? => {
+            Ok(())
+        }
+        Stands::Out => Err(WebError::SignIn),
+    }
+}
+
+/// Whether somebody who follows this session by their visit as its teacher, or at this
+/// place as one who is invited, may go on: their visit may have ended meanwhile.
+pub(crate) async fn stays(app: &AppState, headers: &HeaderMap, at: &Seat) -> bool {
+    let stays = match at {
+        Seat::Teacher { session } => {
+            let path = format!("/sessions/{session}");
+            comes_in(app, headers, &path, May::Teacher, Look::Glance).await
+        }
+        Seat::Invited { place } => guest(app, headers, place, Look::Glance).await.map(|_| ()),
+    };
+    stays.is_ok()
+}
+
+/// From where somebody follows a session.
+pub(crate) enum Seat {
+    /// Its own pages.
+    Teacher {
+        /// Which session.
+        session: SessionId,
+    },
+    /// An invited person's pages.
+    Invited {
+        /// Where these are.
+        place: String,
+    },
 }
 
 /// Leads to the page for signing in, and back to where a form was rather than to where
@@ -291,13 +334,6 @@ fn to_sign_in(method: &Method, request: &Request) -> Response {
         }
     };
     Redirect::to(&sign_in::address(back)).into_response()
-}
-
-/// Where a request comes from.
-fn address(app: &AppState, request: &Request) -> IpAddr {
-    let peer = request.extensions().get::<ConnectInfo<SocketAddr>>();
-    app.door
-        .from(peer.map(|ConnectInfo(peer)| *peer), request.headers())
 }
 
 /// A visit that begins: its key, and the header that has the browser keep it.
@@ -355,12 +391,21 @@ pub(crate) async fn invited(
     headers: &HeaderMap,
     place: &str,
 ) -> Result<(SessionId, u32), WebError> {
+    guest(app, headers, place, Look::Asked).await
+}
+
+async fn guest(
+    app: &AppState,
+    headers: &HeaderMap,
+    place: &str,
+    look: Look,
+) -> Result<(SessionId, u32), WebError> {
     let cookie = Cookie {
         place: Some(place),
         is_secure: app.door.is_secure(headers),
     };
     let key = cookie.read(headers).ok_or(WebError::NotInvited)?;
-    match visitor(app, key).await? {
+    match visitor(app, key, look).await? {
         // A key is for the place for which it was given.
         Some(Visitor::Invited {
             invite,

@@ -1,8 +1,5 @@
 //! Signing in and out, by page and by script.
 
-use std::net::IpAddr;
-use std::time::Instant;
-
 use askama::Template;
 use axum::body::Bytes;
 use axum::extract::{Form as FormBody, FromRequest, Query, Request, State};
@@ -13,8 +10,9 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use serde_json::{Value, json};
 
+use super::budgets::Whence;
 use super::cookie::Cookie;
-use super::{OWNERS, Stands, begin, password};
+use super::{Look, OWNERS, Stands, begin, password};
 use crate::server::AppState;
 use crate::server::api::{Body, read_body};
 use crate::server::error::{ApiError, PageError, WebError};
@@ -92,29 +90,18 @@ async fn show(
 ) -> Result<Response, PageError> {
     let to = named(&query, "to");
     let to = local(&to);
-    match super::stands(&app, &headers).await? {
+    match super::stands(&app, &headers, Look::Asked).await? {
         Stands::In => Ok(Redirect::to(to).into_response()),
         Stands::Out => Ok(page(to.to_owned(), None)),
         Stands::Unlocked => Err(WebError::NoPassword.into()),
     }
 }
 
-/// Takes one of the tries that an address has.
-fn spend_try(app: &AppState, from: IpAddr) -> Result<(), WebError> {
-    app.door
-        .sign_ins
-        .take(&from, Instant::now())
-        .map_err(|wait| {
-            tracing::warn!(%from, "too many sign-ins");
-            WebError::TooMany(wait)
-        })
-}
-
 /// Begins a visit if the password is right.
 async fn enter(
     app: &AppState,
     headers: &HeaderMap,
-    from: IpAddr,
+    from: Whence,
     given: String,
 ) -> Result<(VisitKey, Option<HeaderValue>), WebError> {
     let kept = super::ask(app, |store| store.visits().password()).await?;
@@ -129,16 +116,17 @@ async fn enter(
     let right = right.await.map_err(WebError::internal)?;
     drop(turn);
     if !right {
-        tracing::warn!(%from, "a sign-in failed");
+        tracing::warn!(from = %from.address, "a sign-in failed");
         return Err(WebError::WrongPassword);
     }
-    tracing::info!(%from, "the owner signed in");
+    tracing::info!(from = %from.address, "the owner signed in");
+    app.door.budgets.welcome(from);
     begin(app, headers, None, None).await
 }
 
 async fn sign_in(State(app): State<AppState>, request: Request) -> Result<Response, PageError> {
-    let from = super::address(&app, &request);
-    spend_try(&app, from)?;
+    let from = app.door.budgets.whence(&request);
+    app.door.budgets.spend_try(from)?;
     let headers = request.headers().clone();
     let fields = FormBody::<Vec<(String, String)>>::from_request(request, &()).await;
     let form = read_form(fields)?;
@@ -161,6 +149,7 @@ async fn sign_in(State(app): State<AppState>, request: Request) -> Result<Respon
 async fn leave(app: &AppState, headers: &HeaderMap) -> Result<(), WebError> {
     if let Some(key) = super::owners_key(app, headers) {
         super::ask(app, move |store| store.visits().end_visit(&key.digest())).await?;
+        tracing::info!("a visit was ended");
     }
     Ok(())
 }
@@ -177,12 +166,15 @@ async fn sign_out(State(app): State<AppState>, headers: HeaderMap) -> Result<Res
     {
         answer.headers_mut().insert(SET_COOKIE, forgotten);
     }
+    // Pictures and films were to be kept by the browser.
+    let cache = HeaderValue::from_static("\"cache\"");
+    answer.headers_mut().insert("clear-site-data", cache);
     Ok(answer)
 }
 
 async fn give_key(State(app): State<AppState>, request: Request) -> Result<Response, ApiError> {
-    let from = super::address(&app, &request);
-    spend_try(&app, from)?;
+    let from = app.door.budgets.whence(&request);
+    app.door.budgets.spend_try(from)?;
     let headers = request.headers().clone();
     let body: Body = Bytes::from_request(request, &()).await;
     let body = read_body(body)?;

@@ -12,6 +12,8 @@ mod page;
 mod preview;
 mod sheet;
 
+use std::error::Error;
+
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Form as FormBody, FromRequest, Multipart, Query};
 use axum::extract::{Request, State};
@@ -58,24 +60,29 @@ async fn show(Query(query): Query<Vec<(String, String)>>) -> Result<Response, Pa
 async fn fields(request: Request) -> Result<Vec<(String, String)>, WebError> {
     let kind = request.headers().get(CONTENT_TYPE);
     let kind = kind.and_then(|kind| kind.to_str().ok()).unwrap_or_default();
-    let unreadable = |status: StatusCode| match status {
+    let unreadable = |status: StatusCode, cause: &(dyn Error + 'static)| match status {
         StatusCode::PAYLOAD_TOO_LARGE => WebError::TooLarge,
-        _ => WebError::Unreadable("the form could not be read: go back and send it again".into()),
+        _ => WebError::unread(
+            cause,
+            "the form could not be read: go back and send it again",
+        ),
     };
     if !kind.starts_with("multipart/form-data") {
         let form = FormBody::<Vec<(String, String)>>::from_request(request, &()).await;
-        return form.map(|form| form.0).map_err(|e| unreadable(e.status()));
+        return form
+            .map(|form| form.0)
+            .map_err(|e| unreadable(e.status(), &e));
     }
     let parts = Multipart::from_request(request, &()).await;
-    let mut parts = parts.map_err(|e| unreadable(e.status()))?;
+    let mut parts = parts.map_err(|e| unreadable(e.status(), &e))?;
     let mut fields = Vec::new();
     while let Some(part) = parts
         .next_field()
         .await
-        .map_err(|e| unreadable(e.status()))?
+        .map_err(|e| unreadable(e.status(), &e))?
     {
         let name = part.name().unwrap_or_default().to_owned();
-        let bytes = part.bytes().await.map_err(|e| unreadable(e.status()))?;
+        let bytes = part.bytes().await.map_err(|e| unreadable(e.status(), &e))?;
         // What is no text is told to be no task file.
         fields.push((name, String::from_utf8_lossy(&bytes).into_owned()));
     }

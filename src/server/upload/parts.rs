@@ -73,10 +73,9 @@ pub(super) async fn take(
         Err(Stopped::InBody(error)) => Err(if Flow::of(&flow).is_over {
             WebError::UploadTooLarge
         } else {
-            WebError::Unreadable(format!(
-                "the upload broke off, or is no `multipart/form-data`: {}",
-                error.body_text()
-            ))
+            let text = error.body_text();
+            let told = "the upload broke off, or is no `multipart/form-data`";
+            WebError::unread(&error, format!("{told}: {text}"))
         }),
     };
     if result.is_err() {

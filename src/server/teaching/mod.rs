@@ -1,10 +1,12 @@
-//! The one way in and out of a session: decide, append durably, fold, think,
-//! append, show; on a bounded pool, one thing at a time for each session.
+//! The sessions of a server: begun, looked at, acted on and listed. Must not know what
+//! a request is.
+
+mod turn;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::sync::Semaphore;
 
 use super::ahead::{Foresight, Trial};
 use super::archive::Archive;
@@ -13,7 +15,7 @@ use super::desks::Desks;
 use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
-use super::metrics::{Clock, Metrics};
+use super::metrics::Metrics;
 use super::upload::{Pools, Upload};
 use crate::evidence::Stop;
 use crate::session::{Decision, Position, Session, Setup, Task};
@@ -36,7 +38,10 @@ const PATIENCE: Duration = Duration::from_secs(30);
 pub(crate) struct Teaching {
     archive: Arc<Archive>,
     desks: Arc<Desks>,
+    /// To think.
     permits: Arc<Semaphore>,
+    /// To read a session from its log, which does not wait for those who think.
+    folds: Arc<Semaphore>,
     busy: Arc<Busy>,
     foresight: Arc<Foresight>,
     live: Arc<Live>,
@@ -44,6 +49,7 @@ pub(crate) struct Teaching {
     /// Set once the server stops.
     over: Stop,
     patience: Duration,
+    grace: Duration,
 }
 
 impl Teaching {
@@ -67,13 +73,20 @@ impl Teaching {
             }),
             desks: Arc::default(),
             permits: Arc::new(Semaphore::new(width.max(1))),
+            folds: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
             live,
             leases: Arc::new(Leases::new(lease)),
             over: Stop::default(),
             patience: SOON,
+            grace: GRACE,
         }
+    }
+
+    /// The same, which thinks on for so long once nobody waits.
+    pub(crate) fn with_grace(self, grace: Duration) -> Self {
+        Self { grace, ..self }
     }
 
     /// The same, for those who rather wait than ask again.
@@ -149,7 +162,7 @@ impl Teaching {
     async fn wake(&self, id: SessionId) -> Result<SessionId, WebError> {
         match self.look(id, |_| ()).await {
             // It is there, and its first question will be.
-            Ok(()) | Err(WebError::Slow) => Ok(id),
+            Ok(()) | Err(WebError::Slow | WebError::Waiting) => Ok(id),
             Err(error) => Err(error),
         }
     }
@@ -216,68 +229,8 @@ impl Teaching {
         view: impl FnOnce(&Session) -> T + Send + 'static,
     ) -> Result<T, WebError> {
         let nothing = |_: &Session| Ok(Decision::Already(Position::Thinking));
-        self.act(id, nothing, |session, _| view(session)).await
-    }
-
-    /// Does what `decide` decides, durably, and shows where it led.
-    ///
-    /// `decide` is asked again where another writer was faster.
-    pub(crate) async fn act<T: Send + 'static>(
-        &self,
-        id: SessionId,
-        decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
-        view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
-    ) -> Result<T, WebError> {
-        let here = self.clone();
-        let desk = self.desks.of(id);
-        let _waiting = desk.wait(GRACE);
-        let work = async move {
-            let wait = here.archive.metrics.wait();
-            let mut held = desk.session().lock_owned().await;
-            let permit = Arc::clone(&here.permits).acquire_owned().await;
-            let permit = permit.map_err(WebError::internal)?;
-            let turn = wait.over();
-            let stop = desk.begin();
-            if here.over.is_set() {
-                stop.set();
-            }
-            // The guard and the permit go along: they are free again when the
-            // work is done, even if nobody waits for it any more.
-            tokio::task::spawn_blocking(move || {
-                let (mut permit, _turn) = (Some(permit), turn);
-                let begun = Instant::now();
-                let archive = &here.archive;
-                let mut session = match held.take() {
-                    Some(session) if archive.store.is_shared() => archive.catch_up(&id, session)?,
-                    Some(session) => session,
-                    None => archive.load(&id)?,
-                };
-                match here.advance(&id, &mut session, decide, &stop, &mut permit) {
-                    Ok(position) => {
-                        here.live.tell(id, session.entries());
-                        let shown = view(&session, &position);
-                        here.busy.note(begun.elapsed());
-                        here.foresight
-                            .prepare(id, &session, &here.permits, &here.busy);
-                        *held = Some(session);
-                        Ok(shown)
-                    }
-                    Err(error) => {
-                        here.busy.note(begun.elapsed());
-                        if error.is_refusal() {
-                            *held = Some(session);
-                        }
-                        Err(error)
-                    }
-                }
-            })
+        self.take_turn(id, nothing, |session, _| view(session), None)
             .await
-            .map_err(WebError::internal)?
-        };
-        match tokio::time::timeout(self.patience, work).await {
-            Ok(result) => result,
-            Err(_) => Err(WebError::Slow),
-        }
     }
 
     /// What `view` shows of every answer that was tried out on the session as it
@@ -318,53 +271,5 @@ impl Teaching {
         tokio::task::spawn_blocking(work)
             .await
             .map_err(WebError::internal)?
-    }
-
-    /// Decides, appends and thinks; where that led. What was decided is kept even where
-    /// thinking was stopped; the permit to think is given back once that is done.
-    fn advance(
-        &self,
-        id: &SessionId,
-        session: &mut Session,
-        decide: impl Fn(&Session) -> Result<Decision, WebError>,
-        stop: &Stop,
-        permit: &mut Option<OwnedSemaphorePermit>,
-    ) -> Result<Position, WebError> {
-        loop {
-            let clock = Clock::start();
-            let already = match decide(session)? {
-                Decision::Append(event) => {
-                    let appended = match self.foresight.take(*id, session, &event) {
-                        Some(trial) => {
-                            drop(permit.take());
-                            self.archive.adopt(id, session, trial)?
-                        }
-                        None => self.archive.append(id, session, &event)?,
-                    };
-                    if !appended {
-                        continue;
-                    }
-                    None
-                }
-                Decision::Already(position) => Some(position),
-            };
-            let mut thought = already.is_none();
-            while let Some(event) = session.think_until(stop) {
-                // What is left is to wait for the disk: others may think meanwhile.
-                drop(permit.take());
-                self.archive.append(id, session, &event)?;
-                thought = true;
-            }
-            if stop.is_set() && *session.position() == Position::Thinking {
-                return Err(WebError::Slow);
-            }
-            if thought {
-                self.archive.metrics.chosen(&clock);
-            }
-            return Ok(match already {
-                Some(position) if position != Position::Thinking => position,
-                _ => session.position().clone(),
-            });
-        }
     }
 }
