@@ -16,10 +16,36 @@ const MOST: usize = 200;
 
 /// Bytes as the lines of a log.
 pub(crate) fn log(data: &[u8]) {
+    read(text(data));
     let lines = text(data).lines().filter(|line| !line.trim().is_empty());
     let read: Result<Vec<Event>, _> = lines.take(MOST).map(serde_json::from_str).collect();
     if let Ok(events) = read {
         fold(events);
+    }
+}
+
+/// Reads a log as `memrep replay` does: as many entries as lines, or the line at fault.
+fn read(text: &str) {
+    let lines = text.lines().filter(|line| !line.trim().is_empty()).count();
+    match memrep::cli::read_log(text) {
+        Ok(entries) => assert_eq!(entries, lines, "one entry a line"),
+        Err(error) if lines == 0 => assert!(error.to_string().contains("empty"), "{error:#}"),
+        Err(error) => {
+            let told = format!("{error:#}");
+            let after = told
+                .strip_prefix("line ")
+                .and_then(|rest| rest.split_once(": "));
+            let (line, fault) = after.unwrap_or_else(|| panic!("no line: {told}"));
+            let number: usize = line.parse().unwrap_or_else(|e| panic!("{e}: {told}"));
+            let at = number
+                .checked_sub(1)
+                .and_then(|index| text.lines().nth(index));
+            assert!(
+                at.is_some_and(|at| !at.trim().is_empty()),
+                "no such line: {told}"
+            );
+            assert!(!fault.is_empty(), "a fault says nothing: {told}");
+        }
     }
 }
 

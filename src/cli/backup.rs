@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
+use clap::ArgMatches;
 use serde_json::json;
 
 use super::database;
 use super::output::{self, Output, counted};
-use crate::store::{Checked, back_up, free_name, now};
+use crate::store::{Checked, back_up, now};
 
 /// Arguments of `memrep backup`.
 #[derive(Debug, clap::Args)]
@@ -22,11 +23,11 @@ The copy is whole and was checked when its name is printed. A folder keeps the
 last ones that were made of this database; a file is never replaced.
 
 Exit status: 0 if the backup is there, 2 if not.")]
-pub(crate) struct Args {
-    /// The database file.
-    #[arg(long, value_name = "PATH", default_value_t = database::usual())]
-    database: String,
-    /// A folder, in which the backup is named by the time, or a new file.
+pub(super) struct Args {
+    #[command(flatten)]
+    _which: database::Which,
+    /// A folder, in which the backup is named by the time, or a new file; a name without
+    /// an ending such as `.db` is a folder, which is made if it is not there.
     #[arg(long, value_name = "DIR|FILE", default_value = "backups")]
     to: PathBuf,
     /// How many backups a folder keeps of this database.
@@ -38,15 +39,16 @@ pub(crate) struct Args {
     format: Output,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if database::is_elsewhere(&args.database) {
+/// Runs the command, given how it was called.
+pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
+    let database = database::named(flags)?;
+    if database::is_elsewhere(&database) {
         bail!(
             "a PostgreSQL database is backed up by its own tools: pg_dump --format=custom --file=memrep.dump 'ADDRESS', and pg_restore puts it back"
         );
     }
-    let database = Path::new(&args.database);
-    let is_folder = args.to.is_dir() || args.to == Path::new("backups") || ends_as_folder(&args.to);
+    let database = Path::new(&database);
+    let is_folder = args.to.is_dir() || !args.to.exists() && is_named_as_folder(&args.to);
     let (path, checked, removed) = if is_folder {
         into_folder(database, &args.to, args.keep.into())?
     } else {
@@ -72,10 +74,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn ends_as_folder(path: &Path) -> bool {
-    path.as_os_str()
-        .to_string_lossy()
-        .ends_with(std::path::is_separator)
+/// Whether somebody who writes this means a folder, which need not be there yet.
+fn is_named_as_folder(path: &Path) -> bool {
+    let text = path.as_os_str().to_string_lossy();
+    path.extension().is_none() || text.ends_with(std::path::is_separator)
 }
 
 /// A backup named by the time; earlier ones beyond the last `keep` go.
@@ -91,20 +93,24 @@ fn into_folder(
         .context("--database names no file")?
         .to_string_lossy();
     let at = now()?;
-    let named = folder.join(format!("{stem}-{at}.db"));
-    let path = if named.exists() {
-        // Two in one second.
-        free_name(&named.display().to_string())
-    } else {
-        named
+    // Of several in one second the number tells which came later: one that was given
+    // and removed is not given again.
+    let earlier = dated_in(folder, &stem)?;
+    let last = earlier
+        .iter()
+        .filter(|old| old.at == at)
+        .map(|old| old.number);
+    let path = match last.max() {
+        None => folder.join(format!("{stem}-{at}.db")),
+        Some(last) => folder.join(format!("{stem}-{at}.db.{}", last + 1)),
     };
     let checked = back_up(database, &path)?;
-    let mut made = earlier(folder, &stem)?;
-    // Their names are in the order of their times.
+    let mut made = dated_in(folder, &stem)?;
     made.sort_unstable();
     let surplus = made.len().saturating_sub(keep);
     let mut removed = Vec::new();
-    for old in made.into_iter().take(surplus).filter(|old| *old != path) {
+    let made = made.into_iter().take(surplus).map(|old| old.path);
+    for old in made.filter(|old| *old != path) {
         fs::remove_file(&old)
             .with_context(|| format!("{}: it cannot be removed", old.display()))?;
         removed.push(old);
@@ -112,67 +118,81 @@ fn into_folder(
     Ok((path, checked, removed))
 }
 
+/// A backup by its name, in the order in which they were made.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Dated {
+    at: String,
+    /// Which it is of that second, from 1.
+    number: u64,
+    path: PathBuf,
+}
+
 /// The backups of this database in the folder.
-fn earlier(folder: &Path, stem: &str) -> anyhow::Result<Vec<PathBuf>> {
+fn dated_in(folder: &Path, stem: &str) -> anyhow::Result<Vec<Dated>> {
     let files = fs::read_dir(folder)
         .with_context(|| format!("{}: the folder cannot be read", folder.display()))?;
     let mut found = Vec::new();
     for file in files {
         let path = file.context("the folder cannot be read")?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if is_dated(&name, stem) {
-            found.push(path);
+        if let Some((at, number)) = date(&name, stem) {
+            let at = at.to_owned();
+            found.push(Dated { at, number, path });
         }
     }
     Ok(found)
 }
 
-/// Whether a file has the name of a backup: `memrep-20260131T120000Z.db`, or the
-/// same with a number.
-fn is_dated(name: &str, stem: &str) -> bool {
-    let Some(rest) = name
-        .strip_prefix(stem)
-        .and_then(|rest| rest.strip_prefix('-'))
-    else {
-        return false;
-    };
-    let Some((date, number)) = rest.split_at_checked("20260131T120000Z".len()) else {
-        return false;
-    };
+/// When a backup was made by its name, `memrep-20260131T120000Z.db`, or the same with
+/// a number, and that number; none where a file has another name.
+fn date<'a>(name: &'a str, stem: &str) -> Option<(&'a str, u64)> {
+    let rest = name.strip_prefix(stem)?.strip_prefix('-')?;
+    let (date, ending) = rest.split_at_checked("20260131T120000Z".len())?;
     let fits = |(place, byte): (usize, u8)| match place {
         8 => byte == b'T',
         15 => byte == b'Z',
         _ => byte.is_ascii_digit(),
     };
-    let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    let is_ours = match number.strip_prefix(".db") {
-        Some("") => true,
-        Some(rest) => rest.strip_prefix('.').is_some_and(is_number),
-        None => false,
+    let number = match ending.strip_prefix(".db")? {
+        "" => 1,
+        more => {
+            let digits = more.strip_prefix('.')?;
+            let is_number = digits.bytes().all(|byte| byte.is_ascii_digit());
+            // The one after the largest has a name too.
+            let number: u32 = digits.parse().ok().filter(|_| is_number)?;
+            number.into()
+        }
     };
-    is_ours && date.bytes().enumerate().all(fits)
+    date.bytes().enumerate().all(fits).then_some((date, number))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_dated;
+    use super::date;
 
     #[test]
     fn only_backups_of_the_same_database_are_counted() {
-        for name in ["lab-20260131T120000Z.db", "lab-20260131T120000Z.db.2"] {
-            assert!(is_dated(name, "lab"), "{name}");
+        for (name, number) in [
+            ("lab-20260131T120000Z.db", 1),
+            ("lab-20260131T120000Z.db.2", 2),
+            ("lab-20260131T120000Z.db.10", 10),
+        ] {
+            let found = date(name, "lab");
+            assert_eq!(found, Some(("20260131T120000Z", number)), "{name}");
         }
         for name in [
             "lab.db",
             "lab-20260131T120000Z",
             "lab-20260131T120000Z.db-wal",
             "lab-20260131T120000Z.db.old",
+            "lab-20260131T120000Z.db.",
+            "lab-20260131T120000Z.db.+3",
             "lab-2026013xT120000Z.db",
             "lab-b-20260131T120000Z.db",
             "other-20260131T120000Z.db",
             "lab-ä",
         ] {
-            assert!(!is_dated(name, "lab"), "{name}");
+            assert_eq!(date(name, "lab"), None, "{name}");
         }
     }
 }

@@ -1,14 +1,30 @@
 //! Where sessions are kept: a file, or a `PostgreSQL` database that several servers
 //! share.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::ArgMatches;
+
+use super::{serve, settings};
 use crate::store::{Sqlite, Store};
 
-/// What `serve` would take as well, unless a flag or a file of settings says another.
-pub(super) fn usual() -> String {
-    std::env::var("MEMREP_DATABASE").unwrap_or_else(|_| "memrep.db".to_owned())
+/// Which database a command beside the server is for: the server's own, unless it says
+/// another.
+#[derive(Debug, clap::Args)]
+pub(super) struct Which {
+    /// The database: as for the server, if nothing is said: `memrep.db`, or what
+    /// `MEMREP_DATABASE` or the file of settings says.
+    #[arg(long, value_name = "PATH|URL")]
+    database: Option<String>,
+    /// The server's file of settings, if it is not `memrep.toml`.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+}
+
+/// The database that the settings name, given the flags of a command with [`Which`].
+pub(super) fn named(flags: &ArgMatches) -> anyhow::Result<String> {
+    Ok(settings::resolve::<serve::Args>(flags)?.0.database)
 }
 
 /// Whether this is the address of a database and no file.

@@ -31,6 +31,8 @@ mod task;
 
 use std::process::ExitCode;
 
+pub use replay::read_log;
+
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 /// Learns a formal task specification from comparisons and membership answers.
@@ -101,9 +103,9 @@ pub fn main() -> ExitCode {
         Some(Command::Task(args)) => task::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         #[cfg(feature = "server")]
-        Some(Command::Backup(args)) => backup::run(&args),
+        Some(Command::Backup(args)) => backup::run(&args, flags),
         #[cfg(feature = "server")]
-        Some(Command::Restore(args)) => restore::run(&args),
+        Some(Command::Restore(args)) => restore::run(&args, flags),
         #[cfg(feature = "server")]
         Some(Command::Config(args)) => config::run(&args, flags),
         #[cfg(feature = "server")]

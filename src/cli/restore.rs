@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
+use clap::ArgMatches;
 use serde_json::json;
 
 use super::database;
@@ -20,13 +21,12 @@ The backup is checked first and stays where it is. A database that it replaces i
 kept beside, under another name.
 
 Exit status: 0 if the database is there, 2 if nothing was changed.")]
-pub(crate) struct Args {
+pub(super) struct Args {
     /// The backup.
     #[arg(value_name = "BACKUP")]
     backup: PathBuf,
-    /// The database file that is to be made of it.
-    #[arg(long, value_name = "PATH", default_value_t = database::usual())]
-    database: String,
+    #[command(flatten)]
+    _which: database::Which,
     /// Replace a database that is there.
     #[arg(long)]
     force: bool,
@@ -35,14 +35,15 @@ pub(crate) struct Args {
     format: Output,
 }
 
-/// Runs the command.
-pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if database::is_elsewhere(&args.database) {
+/// Runs the command, given how it was called.
+pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
+    let database = database::named(flags)?;
+    if database::is_elsewhere(&database) {
         bail!(
             "a PostgreSQL database is put back by its own tools: pg_restore --clean --if-exists --dbname='ADDRESS' memrep.dump"
         );
     }
-    let database = Path::new(&args.database);
+    let database = Path::new(&database);
     let (checked, aside) = restore(&args.backup, database, args.force)?;
     match args.format {
         Output::Text => {

@@ -13,7 +13,7 @@ use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
 
 use super::{database, log, settings};
-use crate::server::{self, AppState, Origin, Reached};
+use crate::server::{self, AppState, Limits, Origin, Reached};
 use crate::store::Store;
 
 /// How long work that nobody waits for any more may go on at the end.
@@ -72,6 +72,11 @@ pub(crate) struct Args {
     /// X-Forwarded-For counts for limits.
     #[arg(long)]
     pub(super) behind_proxy: bool,
+    /// How many connections may be open at once: a page that is open is one or two. Who
+    /// comes then is told to come again.
+    #[arg(long, value_name = "N", default_value = "2048",
+          value_parser = clap::value_parser!(u16).range(16..))]
+    pub(super) connections: u16,
     /// A file of settings; without it memrep.toml in the working folder, if it is there.
     #[arg(long, value_name = "FILE")]
     pub(super) config: Option<PathBuf>,
@@ -155,7 +160,12 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
         origins: args.origin,
     };
     let origins = reached.origins.clone();
-    let mut state = AppState::with_lease(opened.store, lease).reached(reached);
+    let limits = Limits {
+        connections: usize::from(args.connections),
+        ..Limits::default()
+    };
+    let state = AppState::with_lease(opened.store, lease);
+    let mut state = state.reached(reached).with_limits(limits);
     println!("memrep is at http://{at}/");
     for origin in origins {
         println!("People reach it at {origin}/");
@@ -173,8 +183,8 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
         stop.await;
         tracing::info!("stopping: requests in progress are answered first");
     };
-    let served = server::run(opened.listener, state, stop).await;
-    served.context("the server stopped")
+    server::run(opened.listener, state, stop).await;
+    Ok(())
 }
 
 /// Lets the process have as many connections as the system allows it: a common bound

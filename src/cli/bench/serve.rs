@@ -10,9 +10,7 @@ use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Out;
-use crate::bench::serve::{
-    self as people, Crowd, Figures, Habits, House, Idle, Met, Moment, Report,
-};
+use crate::bench::serve::{self as people, Crowd, Figures, Habits, House, Idle, Moment, Report};
 use crate::cli::{files, output, serve};
 use crate::oracle::Target;
 
@@ -113,7 +111,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     files::write(&file("csv"), &people::csv(&report)?)?;
     files::write(&file("svg"), &people::figure(&report)?)?;
     files::write(&file("md"), &people::markdown(&report))?;
-    let failed: u64 = report.steps.iter().map(Met::failed).sum();
+    let failed = report.failed();
     output::line(report.findings())?;
     output::line(format!("See {}", file("md").display()))?;
     Ok(ExitCode::from(u8::from(failed > 0)))
@@ -159,9 +157,8 @@ async fn measure(args: &Args, habits: Habits) -> anyhow::Result<Report> {
             let lasting = Duration::from_secs(60 * minutes);
             let (house, address) = open(args, &within)?;
             let moments = soak(address, *people, lasting, &habits, &progress).await;
-            if let Some(house) = house {
-                stopped.push(house.close()?);
-            }
+            // Everybody has left, so that how long it takes to stop says little.
+            house.map(House::close).transpose()?;
             Some((*people, moments))
         }
     };
@@ -258,6 +255,7 @@ async fn soak(
             at,
             memory: memory_of(address).await,
             answers: met.waits.len(),
+            failed: met.failed(),
             p95: met.wait(95),
             p99: met.wait(99),
         });

@@ -14,7 +14,7 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::filter::{FilterExt as _, Targets, filter_fn};
 use tracing_subscriber::layer::{Context, SubscriberExt as _};
 use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt as _;
@@ -28,8 +28,7 @@ use self::queue::{Queue, Writer};
 pub(super) fn start(format: Format, levels: Targets) -> Writer {
     let (queue, writer) = queue::start(format, std::io::stderr());
     let lines = Lines { format, queue };
-    // It tells whole addresses, and in some there are keys; refusals are told by us.
-    let levels = levels.with_target("tower_http::csrf", LevelFilter::OFF);
+    let levels = levels.and(filter_fn(|of| is_ours(of.target())));
     tracing_subscriber::registry()
         .with(lines.with_filter(levels))
         .init();
@@ -42,6 +41,15 @@ pub(super) fn start(format: Format, levels: Targets) -> Writer {
         tracing::error!(cause, place = place.as_deref(), "panicked");
     }));
     writer
+}
+
+/// Whether this program tells it. Others are not heard, whatever level is asked for:
+/// they tell whole addresses and headers, and in some of these there are keys.
+fn is_ours(target: &str) -> bool {
+    let name = env!("CARGO_CRATE_NAME");
+    target
+        .strip_prefix(name)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
 }
 
 /// Writes every event as a line, with the fields of the spans that it happens in.

@@ -7,13 +7,24 @@ use serde_json::Value;
 use crate::session::Event;
 
 /// One entry of the log.
-pub(super) struct Line {
+pub(super) struct Line<'a> {
     /// Where it stands in the file, from 1.
     pub(super) number: usize,
+    /// What stands there. It is read again when it is wanted: all entries together would
+    /// take many times as much memory as the log.
+    text: &'a str,
+}
+
+impl Line<'_> {
     /// What it says.
-    pub(super) event: Event,
-    /// The same as it stands there, without its number and time.
-    pub(super) body: Value,
+    pub(super) fn event(&self) -> anyhow::Result<Event> {
+        Ok(serde_json::from_value(self.body()?)?)
+    }
+
+    /// What stands there, without its number and time.
+    pub(super) fn body(&self) -> anyhow::Result<Value> {
+        Ok(parse(self.text)?.1)
+    }
 }
 
 /// Reads the lines of a log. Empty ones are passed over.
@@ -21,8 +32,8 @@ pub(super) struct Line {
 /// # Errors
 ///
 /// With the line, where it is no entry, or its number is not the next one.
-pub(super) fn read(text: &str) -> anyhow::Result<Vec<Line>> {
-    let mut lines: Vec<Line> = Vec::new();
+pub(super) fn read(text: &str) -> anyhow::Result<Vec<Line<'_>>> {
+    let mut lines: Vec<Line<'_>> = Vec::new();
     let mut numbered = None;
     for (index, line) in text.lines().enumerate() {
         if line.trim().is_empty() {
@@ -42,15 +53,11 @@ pub(super) fn read(text: &str) -> anyhow::Result<Vec<Line>> {
                 "line {number}: this is entry {seq}, and entry {expected} comes next: an entry is missing, doubled or in another place"
             );
         }
-        let event = serde_json::from_value(body.clone());
-        let event = event.map_err(|error| {
+        let event: Result<Event, _> = serde_json::from_value(body);
+        event.map_err(|error| {
             anyhow!("line {number}: entry {expected} is none of a session's log: {error}")
         })?;
-        lines.push(Line {
-            number,
-            event,
-            body,
-        });
+        lines.push(Line { number, text: line });
     }
     ensure!(
         !lines.is_empty(),

@@ -59,6 +59,15 @@ pub(crate) struct Args {
     format: Output,
 }
 
+/// Reads a log as `memrep replay` does before it folds it: how many entries there are.
+///
+/// # Errors
+///
+/// With the line at fault, where there is one.
+pub fn read_log(text: &str) -> anyhow::Result<usize> {
+    Ok(lines::read(text)?.len())
+}
+
 /// A session that was rebuilt.
 struct Rebuilt {
     session: Session,
@@ -68,8 +77,6 @@ struct Rebuilt {
     rethought: usize,
     /// Those of them that say less than this version does.
     terse: usize,
-    /// Questions that came out otherwise because the budget ended either time.
-    hurried: usize,
 }
 
 /// Runs the command.
@@ -129,28 +136,29 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 struct Elsewhere(String);
 
 /// Folds the log entry by entry, and works out again what the learner wrote.
-fn rebuild(args: &Args, lines: &[Line]) -> anyhow::Result<Rebuilt> {
+fn rebuild(args: &Args, lines: &[Line<'_>]) -> anyhow::Result<Rebuilt> {
     let first = &lines[0];
-    let begun = |line: &Line, message: String| anyhow!("line {}: {message}", line.number);
-    let Event::Created { memrep, task, .. } = &first.event else {
+    let begun = |line: &Line<'_>, message: String| anyhow!("line {}: {message}", line.number);
+    let event = first.event()?;
+    let Event::Created { memrep, task, .. } = &event else {
         let message = "the first entry of a log creates the session, and this one does not";
         return Err(begun(first, message.to_owned()));
     };
     let world = world(args, task)?;
-    let session = Session::replay_in(world, std::slice::from_ref(&first.event));
+    let session = Session::replay_in(world, std::slice::from_ref(&event));
     let session = session.map_err(|error| begun(first, error.message))?;
     let mut rebuilt = Rebuilt {
         session,
         memrep: memrep.clone(),
         rethought: 0,
         terse: 0,
-        hurried: 0,
     };
     for line in &lines[1..] {
+        let event = line.event()?;
         if !args.fold {
-            rebuilt.check(line)?;
+            rebuilt.check(line, &event)?;
         }
-        let applied = rebuilt.session.apply(&line.event);
+        let applied = rebuilt.session.apply(&event);
         applied.map_err(|error| anyhow!("line {}: {error}", line.number))?;
     }
     Ok(rebuilt)
@@ -159,9 +167,9 @@ fn rebuild(args: &Args, lines: &[Line]) -> anyhow::Result<Rebuilt> {
 impl Rebuilt {
     /// Works out an entry of the learner's again, with a learner that was told what
     /// stands before it and has never thought: as after a restart.
-    fn check(&mut self, line: &Line) -> anyhow::Result<()> {
+    fn check(&mut self, line: &Line<'_>, event: &Event) -> anyhow::Result<()> {
         let is_learners = matches!(
-            line.event,
+            event,
             Event::Asked { .. } | Event::Conflict { .. } | Event::Done { .. }
         );
         if !is_learners {
@@ -177,7 +185,8 @@ impl Rebuilt {
             Some(event) => serde_json::to_value(&event)?,
             None => Value::Null,
         };
-        if says_less(&line.body, &follows) {
+        let logged = line.body()?;
+        if says_less(&logged, &follows) {
             self.terse += 1;
             if let Value::Object(fields) = &mut follows {
                 fields.remove("left");
@@ -186,14 +195,8 @@ impl Rebuilt {
         }
         self.rethought += 1;
         // Byte for byte, whatever the order of the keys in the file.
-        let (logged, follows) = (line.body.to_string(), follows.to_string());
+        let (logged, follows) = (logged.to_string(), follows.to_string());
         if logged == follows {
-            return Ok(());
-        }
-        // Who has thought before comes further with the same budget.
-        let is_hurried = |text: &str| text.contains("\"hurried\":true");
-        if is_hurried(&logged) || is_hurried(&follows) {
-            self.hurried += 1;
             return Ok(());
         }
         Err(anyhow!(

@@ -55,7 +55,6 @@ pub(super) fn json(rebuilt: &Rebuilt) -> Value {
         "setup": session.setup(),
         "rethought": rebuilt.rethought,
         "terse": rebuilt.terse,
-        "hurried": rebuilt.hurried,
         "questions": {
             "membership": put.membership,
             "comparison": put.comparison,
@@ -109,14 +108,8 @@ pub(super) fn text(rebuilt: &Rebuilt) -> anyhow::Result<()> {
     ))?;
     if rebuilt.rethought > 0 {
         line(format_args!(
-            "{} of the learner's worked out again: {}",
+            "{} of the learner's worked out again: all the same",
             counted(rebuilt.rethought as u64, "entry", "entries"),
-            match rebuilt.hurried {
-                0 => "all the same".to_owned(),
-                hurried => format!(
-                    "the same but for {hurried}, which the budget ended before the best question was found"
-                ),
-            },
         ))?;
     }
     if rebuilt.terse > 0 {

@@ -207,7 +207,9 @@ fn held_by(
         texts,
         source,
     };
-    if flags.value_source(id) == Some(ValueSource::CommandLine) {
+    // Commands beside the server have some of its options.
+    let is_known = flags.try_contains_id(id).is_ok();
+    if is_known && flags.value_source(id) == Some(ValueSource::CommandLine) {
         let raw = flags.get_raw(id).unwrap_or_default();
         let texts = raw.map(|text| text.to_string_lossy().into_owned());
         let flag = format!("--{}", key.replace('_', "-"));
