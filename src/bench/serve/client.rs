@@ -36,6 +36,9 @@ pub enum ClientError {
     /// There was none within a minute.
     #[error("no answer within a minute")]
     Slow,
+    /// The server asks for patience.
+    #[error("put off for too long")]
+    PutOff,
     /// It is not what was expected.
     #[error("status {0}")]
     Status(u16),
@@ -81,6 +84,12 @@ impl Client {
         body: Option<&Value>,
     ) -> Result<Value, ClientError> {
         let (status, bytes) = self.send(method, path, body).await?;
+        if status == StatusCode::SERVICE_UNAVAILABLE {
+            let told: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+            if let Some("still_thinking" | "not_taken_yet") = told["error"]["code"].as_str() {
+                return Err(ClientError::PutOff);
+            }
+        }
         if !status.is_success() {
             return Err(ClientError::Status(status.as_u16()));
         }

@@ -1,6 +1,6 @@
 //! Many scripted people at once, and what they met.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -33,6 +33,8 @@ pub(super) struct Ledger {
 
 #[derive(Default)]
 struct Written {
+    /// Who waits at this moment, and since when.
+    waiting: HashMap<usize, Instant>,
     waits: Vec<Duration>,
     beginnings: Vec<Duration>,
     pages: Vec<Duration>,
@@ -40,8 +42,28 @@ struct Written {
 }
 
 impl Ledger {
-    pub(super) fn waited(&self, wait: Duration) {
-        self.written().waits.push(wait);
+    /// This person waits for the next question from now on.
+    pub(super) fn asks(&self, person: usize) {
+        self.written().waiting.insert(person, Instant::now());
+    }
+
+    pub(super) fn waited(&self, person: usize) {
+        let mut written = self.written();
+        if let Some(since) = written.waiting.remove(&person) {
+            written.waits.push(since.elapsed());
+        }
+    }
+
+    /// What was written since the last time. Who waits still has waited so long at
+    /// least: a server that hangs is not to look quick.
+    fn take(&self) -> (Written, usize) {
+        let mut written = self.written();
+        let waiting = written.waiting.clone();
+        let mut taken = std::mem::take(&mut *written);
+        taken.waits.extend(waiting.values().map(Instant::elapsed));
+        let unfinished = waiting.len();
+        written.waiting = waiting;
+        (taken, unfinished)
     }
 
     pub(super) fn began(&self, wait: Duration) {
@@ -56,8 +78,10 @@ impl Ledger {
         self.ended.fetch_add(1, Ordering::Relaxed);
     }
 
-    pub(super) fn failed(&self, error: &ClientError) {
-        *self.written().errors.entry(error.kind()).or_default() += 1;
+    pub(super) fn failed(&self, person: usize, error: &ClientError) {
+        let mut written = self.written();
+        written.waiting.remove(&person);
+        *written.errors.entry(error.kind()).or_default() += 1;
     }
 
     /// Somebody was told that the server is still thinking.
@@ -107,7 +131,7 @@ impl Crowd {
     /// What they meet in the time to come.
     pub async fn watch(&mut self, lasting: Duration) -> Met {
         // What was met before does not count: not all were there.
-        drop(std::mem::take(&mut *self.ledger.written()));
+        drop(self.ledger.take());
         let (ended, reconnects, put_off) = (self.ended(), self.reconnects(), self.put_off());
         let (begun, own) = (Instant::now(), process_cpu());
         let first = Figures::of(self.address).await;
@@ -121,7 +145,7 @@ impl Crowd {
             }
         }
         let lasted = begun.elapsed();
-        let written = std::mem::take(&mut *self.ledger.written());
+        let (written, unfinished) = self.ledger.take();
         let ends = first.zip(last);
         let appended = ends
             .as_ref()
@@ -132,6 +156,7 @@ impl Crowd {
             people: self.people,
             lasted,
             waits: written.waits,
+            unfinished,
             beginnings: written.beginnings,
             pages: written.pages,
             appended,

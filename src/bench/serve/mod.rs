@@ -38,8 +38,11 @@ pub struct Met {
     pub people: usize,
     /// For how long it was measured.
     pub lasted: Duration,
-    /// From each answer to the next question.
+    /// From each answer to the next question; to the end of the while where that had
+    /// not come.
     pub waits: Vec<Duration>,
+    /// How many of these waits had not come to their end.
+    pub unfinished: usize,
     /// From the wish for a session to its first question.
     pub beginnings: Vec<Duration>,
     /// From asking for a page whose question is there to having it.
@@ -107,6 +110,8 @@ pub struct Moment {
     pub memory: Option<u64>,
     /// The answers since the moment before.
     pub answers: usize,
+    /// The requests that failed since then.
+    pub failed: u64,
     /// The waits since then: 95 in a hundred were no longer.
     pub p95: Duration,
     /// And 99 in a hundred.
@@ -143,6 +148,7 @@ mod tests {
             at: Duration::from_secs(60 * minute),
             memory: Some(memory),
             answers: 0,
+            failed: 0,
             p95: Duration::ZERO,
             p99: Duration::ZERO,
         };

@@ -37,6 +37,13 @@ pub struct Report {
 }
 
 impl Report {
+    /// How many requests went wrong, the long run among them.
+    pub fn failed(&self) -> u64 {
+        let long = self.soak.iter().flat_map(|(_, moments)| moments);
+        let steps: u64 = self.steps.iter().map(Met::failed).sum();
+        steps + long.map(|moment| moment.failed).sum::<u64>()
+    }
+
     /// What the measurements say, in a sentence or three.
     pub fn findings(&self) -> String {
         let mut text = String::new();
@@ -59,12 +66,13 @@ impl Report {
                 ms(met.wait(95))
             );
         }
-        let failed: u64 = self.steps.iter().map(Met::failed).sum();
+        let long = self.soak.iter().flat_map(|(_, moments)| moments);
         let answers: usize = self.steps.iter().map(|met| met.waits.len()).sum();
+        let answers = answers + long.map(|moment| moment.answers).sum::<usize>();
+        let failed = self.failed();
         let _ = write!(
             text,
-            " {failed} of {} requests failed.",
-            answers as u64 + failed
+            " {answers} answers were given; {failed} requests failed."
         );
         if let Some(slowest) = self.stopped.iter().max() {
             let _ = write!(
@@ -110,7 +118,7 @@ pub fn markdown(report: &Report) -> String {
     );
     let _ = write!(
         page,
-        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. After every fourth answer they look at the session's page, whose question is there already. *Append* is what the server tells of its store: the bound that 99 in a hundred do not exceed. *Put off* is how often somebody was told that the question is still being thought about; their wait goes on. The server is a process of its own on the same machine as the people, and its database a new file.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
+        "Every scripted person teaches one session after the other ({}), truly, over a connection of their own to the JSON interface, and thinks {:.1} s between two answers on average (exponentially distributed). A wait is from sending an answer to having the next question: the answer is on the disk by then. *Unfinished* are those still waiting when the time was over; they count with what they had waited. After every fourth answer they look at the session's page, whose question is there already. *Append* is what the server tells of its store: the bound that 99 in a hundred do not exceed. *Put off* is how often somebody was told that the question is still being thought about; their wait goes on. Unless `--url` names one, the server is a process of its own on the same machine as the people, with a database of its own: for each crowd a new one, or with `--idle` the one that holds those sessions.\n\n![Waits by people](serve.svg)\n\nEvery row is a line of [serve.csv](serve.csv).\n\n## Waits\n\n",
         names.join(", "),
         habits.think.as_secs_f64()
     );
@@ -128,6 +136,7 @@ pub fn markdown(report: &Report) -> String {
         "append p99",
         "sessions ended",
         "put off",
+        "unfinished",
         "failed",
         "server memory",
         "server cores",
@@ -171,6 +180,7 @@ fn row(met: &Met) -> Vec<String> {
         }),
         met.ended.to_string(),
         met.put_off.to_string(),
+        met.unfinished.to_string(),
         met.failed().to_string(),
         met.memory.map_or("–".to_owned(), mib),
         met.server_cores.map_or("–".to_owned(), cores),
@@ -217,12 +227,13 @@ fn soak_section(people: usize, moments: &[Moment]) -> String {
                 format!("{:.1}", moment.at.as_secs_f64() / 60.0),
                 moment.memory.map_or("–".to_owned(), mib),
                 moment.answers.to_string(),
+                moment.failed.to_string(),
                 ms(moment.p95),
                 ms(moment.p99),
             ]
         })
         .collect();
-    let header = ["minute", "server memory", "answers", "p95", "p99"].map(String::from);
+    let header = ["minute", "server memory", "answers", "failed", "p95", "p99"].map(String::from);
     section.push_str(&table(&header, &rows));
     section
 }
@@ -250,6 +261,7 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
         "failed",
         "reconnects",
         "put_off",
+        "unfinished",
         "memory",
         "server_cores",
         "people_cores",
@@ -273,6 +285,7 @@ pub fn csv(report: &Report) -> Result<String, csv::Error> {
             met.failed().to_string(),
             met.reconnects.to_string(),
             met.put_off.to_string(),
+            met.unfinished.to_string(),
             met.memory.map_or(String::new(), |bytes| bytes.to_string()),
             met.server_cores
                 .map_or(String::new(), |cores| format!("{cores:.3}")),

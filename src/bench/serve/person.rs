@@ -31,6 +31,7 @@ const BREATH: Duration = Duration::from_millis(500);
 
 /// Somebody with a connection of their own.
 pub(super) struct Person {
+    number: usize,
     client: Client,
     habits: Arc<Habits>,
     ledger: Arc<Ledger>,
@@ -56,6 +57,7 @@ impl Person {
         let mut random = ChaCha8Rng::seed_from_u64(habits.seed);
         random.set_stream(number as u64);
         Self {
+            number,
             client,
             habits,
             ledger,
@@ -71,7 +73,7 @@ impl Person {
         tokio::time::sleep(self.habits.think.mul_f64(late)).await;
         while !self.ledger.is_over() {
             if let Err(error) = self.lesson().await {
-                self.ledger.failed(&error);
+                self.ledger.failed(self.number, &error);
                 tokio::time::sleep(BREATH.max(self.habits.think)).await;
             }
             self.ledger
@@ -106,11 +108,11 @@ impl Person {
             if self.ledger.is_over() {
                 return Ok(());
             }
-            let asked = Instant::now();
+            self.ledger.asks(self.number);
             let path = format!("{}/answers", lesson.path);
             let reply = self.patiently(Method::POST, &path, Some(&answer)).await?;
             question = self.settled(&lesson.path, reply).await?;
-            self.ledger.waited(asked.elapsed());
+            self.ledger.waited(self.number);
             answers += 1;
             if answers % EVERY == 0 {
                 self.look(&lesson.path).await?;
@@ -124,12 +126,17 @@ impl Person {
     async fn look(&mut self, path: &str) -> Result<(), ClientError> {
         let page = path.strip_prefix("/api/v1").unwrap_or(path);
         let asked = Instant::now();
-        let (status, _) = self.client.send(Method::GET, page, None).await?;
-        match status.as_u16() {
-            200 => self.ledger.looked(asked.elapsed()),
-            503 => self.ledger.put_off(),
-            other => return Err(ClientError::Status(other)),
+        loop {
+            let (status, _) = self.client.send(Method::GET, page, None).await?;
+            match status.as_u16() {
+                200 => break,
+                202 if asked.elapsed() < LONGEST => self.ledger.put_off(),
+                202 => return Err(ClientError::PutOff),
+                other => return Err(ClientError::Status(other)),
+            }
+            tokio::time::sleep(AGAIN).await;
         }
+        self.ledger.looked(asked.elapsed());
         Ok(())
     }
 
@@ -157,7 +164,7 @@ impl Person {
         let since = Instant::now();
         loop {
             match self.client.json(method.clone(), path, body).await {
-                Err(ClientError::Status(503)) if since.elapsed() < LONGEST => {
+                Err(ClientError::PutOff) if since.elapsed() < LONGEST => {
                     self.ledger.put_off();
                     tokio::time::sleep(AGAIN).await;
                 }
