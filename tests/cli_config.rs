@@ -80,3 +80,29 @@ fn what_is_wrong_is_told_and_what_may_be_meant_is_asked() {
         "note: MEMREP_ADRR is no setting; did you mean MEMREP_ADDR?\n"
     );
 }
+
+#[test]
+fn commands_beside_the_server_take_its_database() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("memrep.toml"), "database = \"lab.db\"\n").unwrap();
+    std::fs::write(folder.path().join("b.toml"), "database = \"other.db\"\n").unwrap();
+    let backup = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_memrep"))
+            .arg("backup")
+            .args(arguments)
+            .current_dir(folder.path())
+            .env_remove("MEMREP_DATABASE")
+            .output()
+            .unwrap();
+        (output.status.success(), text(output.stderr))
+    };
+    let (_, said) = backup(&[]);
+    assert!(said.contains("lab.db"), "{said}");
+    let (_, said) = backup(&["--config", "b.toml"]);
+    assert!(said.contains("other.db"), "{said}");
+    let (_, said) = backup(&["--database", "mine.db"]);
+    assert!(said.contains("mine.db"), "{said}");
+    drop(memrep::store::Sqlite::open(&folder.path().join("lab.db")).unwrap());
+    let (done, said) = backup(&[]);
+    assert!(done, "{said}");
+}

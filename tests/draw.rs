@@ -2,8 +2,10 @@
 //! hold of every picture.
 
 use std::collections::BTreeSet;
+use std::time::Duration;
 
 use automata::{Alphabet, Dfa, StateId, Symbol, Word};
+use memrep::bench::process_cpu;
 use memrep::draw::{self, Captions, Marks, TooLarge};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -219,6 +221,58 @@ fn random_automata_are_drawn_twice_the_same() {
         if let Ok(svg) = first {
             assert!(!svg.contains("NaN") && !svg.contains("inf\""));
         }
+    }
+}
+
+/// A random automaton of so many states, all of them reachable, of which each has as
+/// many ways out as there are symbols.
+fn crowd(states: usize, symbols: usize, rng: &mut ChaCha8Rng) -> Dfa {
+    let names: Vec<String> = (0..symbols).map(|s| format!("symbol{s}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let accepting: Vec<usize> = (0..states).filter(|state| state % 3 == 1).collect();
+    let mut any = |state: usize, symbol: usize| match symbol {
+        0 => (state + 1) % states,
+        _ => rng.random_range(0..states),
+    };
+    let rows: Vec<Vec<usize>> = (0..states)
+        .map(|state| (0..symbols).map(|symbol| any(state, symbol)).collect())
+        .collect();
+    dfa(&names, &accepting, &rows)
+}
+
+/// Tests are not optimised: the released program takes a fraction of this.
+#[test]
+fn the_largest_pictures_take_300_milliseconds_at_most() {
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let captions = Captions {
+        phrases: true,
+        ..Captions::default()
+    };
+    let (mut slowest, mut drawn) = (Duration::ZERO, 0);
+    for (symbols, states) in [(2, 24), (4, 24), (5, 24), (8, 15)] {
+        for _ in 0..5 {
+            let crowd = crowd(states, symbols, &mut rng);
+            let begun = process_cpu();
+            drawn += usize::from(unmarked(&crowd, &captions).is_ok());
+            slowest = slowest.max(process_cpu().saturating_sub(begun));
+        }
+    }
+    println!("the slowest of {drawn} pictures took {slowest:?}");
+    assert!(drawn > 15, "only {drawn} were small enough");
+    assert!(slowest < Duration::from_millis(300), "{slowest:?}");
+}
+
+/// The words for the states of a rule that only its table shows.
+#[test]
+fn a_hundred_states_are_told_in_words_at_once() {
+    let mut rng = ChaCha8Rng::seed_from_u64(10);
+    for symbols in [1, 2, 8, 64] {
+        let crowd = crowd(100, symbols, &mut rng);
+        let begun = process_cpu();
+        assert_eq!(draw::phrases(&crowd, &Captions::default().words).len(), 100);
+        let took = process_cpu().saturating_sub(begun);
+        println!("{symbols} symbols: {took:?}");
+        assert!(took < Duration::from_millis(300), "{took:?}");
     }
 }
 

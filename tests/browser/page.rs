@@ -36,7 +36,7 @@ const READ: &str = r#"
         rule: main.querySelector("[data-rule]")?.dataset.rule ?? null,
         born: main.born ??= performance.timeOrigin + performance.now(),
         ready: document.readyState === "complete",
-        waiting: document.querySelector("meta[http-equiv=refresh]") !== null,
+        waiting: main.dataset.kind === "wait",
     };
 "#;
 
@@ -71,7 +71,9 @@ impl Page {
 
     /// The word at this place on the page.
     pub(crate) fn word(&self, place: usize, alphabet: &Alphabet) -> Word {
-        alphabet.word(self.words[place].split_whitespace()).unwrap()
+        let word = self.words.get(place);
+        let word = word.unwrap_or_else(|| panic!("no word at {place}: {self:?}"));
+        alphabet.word(word.split_whitespace()).unwrap()
     }
 
     /// The rule on show.

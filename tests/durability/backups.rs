@@ -103,6 +103,29 @@ fn a_backup_made_while_people_answer_is_put_back_and_goes_on() {
     assert_eq!(question, later);
 }
 
+/// However fast one comes after the other: those that go are the oldest.
+#[test]
+fn of_many_backups_in_one_second_the_last_ones_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = folder.path().join("lab.db");
+    let store = Sqlite::open(&database).unwrap();
+    let session = SessionId::random().unwrap();
+    // It is no folder yet, and its name says that it is to be one.
+    let kept = folder.path().join("var").join("kept");
+    let mut made = Vec::new();
+    for seq in 0..12 {
+        store.append(&session, seq, "{}").unwrap();
+        let mut command = memrep(&["backup", "--database", text(&database)]);
+        command.args(["--to", text(&kept), "--keep", "2"]);
+        made.push(PathBuf::from(done(&mut command).trim()));
+        let mut last = made[made.len().saturating_sub(2)..].to_vec();
+        last.sort();
+        assert_eq!(files_in(&kept), last, "after {made:?}");
+    }
+    let newest = Sqlite::open(made.last().unwrap()).unwrap();
+    assert_eq!(newest.read(&session).unwrap().len(), 12);
+}
+
 #[test]
 fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -4,14 +4,14 @@
 //! 200 kills; `MEMREP_KILLS=2000` makes more, `MEMREP_SEED=7` repeats a run's moments.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
-use crate::people::{Found, Person, compare};
+use crate::people::{Found, Pace, Person, compare, of_environment};
 use crate::server::{Reply, Server, answer, answers_in, ask, assert_sound};
 
 /// People who answer at the same time, each in a session of their own.
@@ -19,29 +19,27 @@ const PEOPLE: usize = 4;
 /// Servers over databases of their own that are killed at the same time.
 const LANES: u64 = 2;
 
-fn of_environment(name: &str, usual: u64) -> u64 {
-    let text = std::env::var(name).unwrap_or_default();
-    text.parse().unwrap_or(usual)
-}
-
 /// One server over one database, killed so many times.
 fn lane(database: &Path, kills: u64, seed: u64) -> Found {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut people: Vec<Person> = (0..PEOPLE).map(|_| Person::default()).collect();
     let tasks = ["tomita:4", "tomita:4"];
-    for life in 0..kills {
+    let pace = Pace::default();
+    for life in 0..kills as usize {
         let mut server = Server::at(database);
         let moment = Duration::from_millis(rng.random_range(20..250));
-        let enough = AtomicBool::new(false);
+        pace.enough.store(false, Ordering::Relaxed);
         let address = server.address.clone();
         std::thread::scope(|scope| {
             for (number, person) in people.iter_mut().enumerate() {
-                let (address, enough) = (&address, &enough);
-                scope.spawn(move || person.teach(address, tasks[number % 2], enough));
+                let (address, pace) = (&address, &pace);
+                scope.spawn(move || person.teach(address, tasks[number % 2], pace));
             }
             std::thread::sleep(moment);
+            // A slow machine takes longer, and tells as much.
+            pace.wait_for(life + 2, life / 2);
             server.kill();
-            enough.store(true, Ordering::Relaxed);
+            pace.enough.store(true, Ordering::Relaxed);
         });
         if life % 20 == 0 {
             assert_sound(database);
@@ -49,9 +47,9 @@ fn lane(database: &Path, kills: u64, seed: u64) -> Found {
     }
     assert_sound(database);
     let server = Server::at(database);
-    let never = AtomicBool::new(true);
+    let over = Pace::over();
     for person in &mut people {
-        person.teach(&server.address, "tomita:1", &never);
+        person.teach(&server.address, "tomita:1", &over);
     }
     compare(&server, &people)
 }

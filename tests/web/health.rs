@@ -203,7 +203,7 @@ impl Visits for Ill {
 }
 
 impl Store for Ill {
-    fn append(&self, _: &SessionId, _: u64, _: &str) -> Result<(), StoreError> {
+    fn append_all(&self, _: &SessionId, _: u64, _: &[&str]) -> Result<(), StoreError> {
         self.fails()
     }
     fn read(&self, _: &SessionId) -> Result<Vec<Entry>, StoreError> {

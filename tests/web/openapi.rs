@@ -57,7 +57,10 @@ async fn it_describes_the_routes_that_there_are_and_no_others() {
     let mut there = routes_in(include_str!("../../src/server/api.rs"));
     there.extend(routes_in(include_str!("../../src/server/people_api.rs")));
     // Its upload has a deadline of its own, and is put in beside the others.
-    there.insert(("post".to_owned(), "/sessions".to_owned()));
+    // And these are beside the pages that do the same.
+    for path in ["/sessions", "/sign-in", "/sign-out"] {
+        there.insert(("post".to_owned(), path.to_owned()));
+    }
     assert!(there.len() > 15, "{there:?}");
     assert_eq!(described, there);
     for (method, path) in described {
@@ -214,4 +217,46 @@ async fn replies_are_as_it_says() {
         &late.json(),
     );
     assert!(late.status.is_client_error());
+}
+
+/// Who has a password has to be told by the description that it is wanted, and where.
+#[tokio::test]
+async fn it_says_who_must_sign_in_and_how() {
+    let (site, _) = crate::door::locked();
+    let document = description(&site).await;
+    let token = &document["components"]["securitySchemes"]["token"];
+    assert_eq!(
+        (&token["type"], &token["scheme"]),
+        (&json!("http"), &json!("bearer"))
+    );
+    let mut locked = 0;
+    for (path, operations) in document["paths"].as_object().unwrap() {
+        for (method, operation) in operations.as_object().unwrap() {
+            if method == "parameters" {
+                continue;
+            }
+            let security = operation.get("security").unwrap_or(&document["security"]);
+            let is_open = security.as_array().unwrap().is_empty();
+            let at = path
+                .replace("{id}", &"0".repeat(32))
+                .replace("{key}", "none");
+            let request = Request::builder()
+                .method(method.to_ascii_uppercase().as_str())
+                .uri(format!("{API}{at}"));
+            let reply = site.send(request.body(Body::empty()).unwrap()).await;
+            if is_open || path == "/sign-out" {
+                assert_ne!(reply.status, StatusCode::UNAUTHORIZED, "{method} {path}");
+            } else {
+                assert_eq!(reply.status, StatusCode::UNAUTHORIZED, "{method} {path}");
+                assert_fits(&document, path, method, 401, &reply.json());
+                locked += 1;
+            }
+        }
+    }
+    assert!(locked > 15, "{locked}");
+    let wrong = site.post("/api/v1/sign-in", json!({"password": "x"})).await;
+    assert_fits(&document, "/sign-in", "post", 401, &wrong.json());
+    let right = json!({"password": crate::door::PASSWORD});
+    let given = site.post("/api/v1/sign-in", right).await;
+    assert_fits(&document, "/sign-in", "post", 201, &given.json());
 }

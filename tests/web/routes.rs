@@ -137,18 +137,18 @@ async fn every_row_of_the_table_is_a_route() {
                 _ => &house.owner,
             };
             // Streams do not end, and to sign out or dismiss somebody ends the test.
+            let mut rows = ROUTES.iter().filter(|row| row.path == route.path);
+            let is_promised = rows.any(|row| row.methods.contains(&method));
             let ends = ["/live", "/sign-out", "/dismissal", "/link", "/sign-in"];
-            if route.methods.contains(&method) && ends.iter().any(|end| path.ends_with(end)) {
+            if is_promised && ends.iter().any(|end| path.ends_with(end)) {
                 continue;
             }
             let reply = ask(site, method, &path).await;
             let is_known = reply.status != StatusCode::METHOD_NOT_ALLOWED;
             assert_eq!(
-                is_known,
-                route.methods.contains(&method),
+                is_known, is_promised,
                 "{method} {path}: {} {}",
-                reply.status,
-                reply.text
+                reply.status, reply.text
             );
             let nothing = "There is nothing at this address";
             // This task has none of these.

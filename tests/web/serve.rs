@@ -263,7 +263,10 @@ fn no_password_and_no_key_is_ever_in_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let database = folder.path().join("a.db");
     assert!(password(&database, &[], PASSWORD).status.success());
-    let mut server = Server::start_with(&database, &["--log", "trace"]);
+    let mut server = Server::start_with(
+        &database,
+        &["--log", "trace,tower_http::csrf::service=trace,hyper=trace"],
+    );
     let form = "Content-Type: application/x-www-form-urlencoded\r\n";
     server.exchange("POST /sign-in", form, &format!("password={WRONG}"));
     let signed = server.exchange("POST /sign-in", form, &format!("password={PASSWORD}"));

@@ -14,13 +14,13 @@ use memrep::store::{Sqlite, Store};
 use serde_json::{Value, json};
 
 /// A server as a child process, and where it is.
-struct Server {
+pub(crate) struct Server {
     child: Child,
-    address: String,
+    pub(crate) address: String,
 }
 
 impl Server {
-    fn start(folder: &Path, log: &str) -> Self {
+    pub(crate) fn start(folder: &Path, log: &str) -> Self {
         let lines = std::fs::File::create(folder.join("log")).unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_memrep"))
             .args(["serve", "--addr", "127.0.0.1:0", "--database", "a.db"])
@@ -39,7 +39,7 @@ impl Server {
     }
 
     /// Tells it to stop; how it ended, and after how long.
-    fn stop(mut self) -> (ExitStatus, Duration) {
+    pub(crate) fn stop(mut self) -> (ExitStatus, Duration) {
         let begun = Instant::now();
         let id = self.child.id().to_string();
         let told = Command::new("kill").args(["-TERM", &id]).status().unwrap();
@@ -63,12 +63,12 @@ impl Drop for Server {
 }
 
 /// A connection that stays open.
-struct Line {
+pub(crate) struct Line {
     stream: BufReader<TcpStream>,
 }
 
 impl Line {
-    fn to(address: &str) -> std::io::Result<Self> {
+    pub(crate) fn to(address: &str) -> std::io::Result<Self> {
         let stream = TcpStream::connect(address)?;
         stream.set_read_timeout(Some(Duration::from_secs(30)))?;
         Ok(Self {
@@ -76,7 +76,7 @@ impl Line {
         })
     }
 
-    fn send(&mut self, method: &str, path: &str, body: &Value) -> std::io::Result<()> {
+    pub(crate) fn send(&mut self, method: &str, path: &str, body: &Value) -> std::io::Result<()> {
         let body = if body.is_null() {
             String::new()
         } else {
@@ -91,7 +91,7 @@ impl Line {
 
     /// The status and the body; none if the connection ended before the answer began,
     /// an error if it ended within.
-    fn receive(&mut self) -> std::io::Result<Option<(u16, String)>> {
+    pub(crate) fn receive(&mut self) -> std::io::Result<Option<(u16, String)>> {
         let mut first = String::new();
         match self.stream.read_line(&mut first) {
             Ok(0) => return Ok(None),
@@ -118,7 +118,7 @@ impl Line {
         Ok(Some((status, String::from_utf8(body).unwrap())))
     }
 
-    fn ask(&mut self, method: &str, path: &str, body: &Value) -> Option<(u16, Value)> {
+    pub(crate) fn ask(&mut self, method: &str, path: &str, body: &Value) -> Option<(u16, Value)> {
         // A connection that is closed meanwhile shows when it is read.
         let _ = self.send(method, path, body);
         let (status, text) = self.receive().expect("an answer that began is whole")?;
@@ -253,6 +253,15 @@ fn hard_task() -> Value {
     })
 }
 
+/// Whether a session is being thought about, as the server tells it.
+fn thinks(address: &str) -> bool {
+    let mut line = Line::to(address).unwrap();
+    line.send("GET", "/metrics", &Value::Null).unwrap();
+    let (status, figures) = line.receive().unwrap().unwrap();
+    assert_eq!(status, 200, "{figures}");
+    figures.lines().any(|line| line == "memrep_thinking 1")
+}
+
 #[test]
 fn in_a_long_thought_and_with_readers_waiting_it_stops_within_five_seconds() {
     let folder = tempfile::tempdir().unwrap();
@@ -282,8 +291,14 @@ fn in_a_long_thought_and_with_readers_waiting_it_stops_within_five_seconds() {
         let _ = line.ask("POST", "/api/v1/sessions", &json!({"task": hard_task()}));
         done.store(true, Ordering::Relaxed);
     });
-    std::thread::sleep(Duration::from_millis(700));
-    let is_thinking = !answered.load(Ordering::Relaxed);
+    let asked = Instant::now();
+    while !thinks(&server.address) {
+        assert!(asked.elapsed() < Duration::from_secs(20), "it never thinks");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // Into the middle of it.
+    std::thread::sleep(Duration::from_millis(300));
+    let is_thinking = thinks(&server.address) && !answered.load(Ordering::Relaxed);
     let (status, took) = server.stop();
     thinker.join().unwrap();
     assert!(status.success(), "{status}");

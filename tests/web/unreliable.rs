@@ -1,6 +1,7 @@
 //! A store that does as it is told until it is told to be slow, or to break.
 
 use std::sync::{Condvar, Mutex};
+use std::time::Duration;
 
 use memrep::store::{
     Entry, InviteKey, Listed, NewFile, SessionId, Sqlite, Store, StoreError, StoredFile, UploadId,
@@ -14,6 +15,8 @@ pub(crate) enum Fault {
     None,
     /// Questions are not kept before the fault is another.
     Slow,
+    /// Nothing is kept before the fault is another.
+    Stuck,
     /// The log of this session breaks whoever reads it.
     Panics(SessionId),
 }
@@ -43,13 +46,16 @@ impl Unreliable {
 }
 
 impl Store for Unreliable {
-    fn append(&self, session: &SessionId, seq: u64, body: &str) -> Result<(), StoreError> {
-        if body.contains("\"event\":\"asked\"") {
-            let fault = self.fault.lock().unwrap();
-            let is_slow = |fault: &mut Fault| *fault == Fault::Slow;
-            drop(self.changed.wait_while(fault, is_slow).unwrap());
-        }
-        self.store.append(session, seq, body)
+    fn append_all(&self, session: &SessionId, seq: u64, bodies: &[&str]) -> Result<(), StoreError> {
+        let asks = bodies
+            .iter()
+            .any(|body| body.contains("\"event\":\"asked\""));
+        let waits = |fault: &mut Fault| *fault == Fault::Stuck || (asks && *fault == Fault::Slow);
+        let fault = self.fault.lock().unwrap();
+        // A test that fails meanwhile is to end.
+        let most = Duration::from_secs(30);
+        drop(self.changed.wait_timeout_while(fault, most, waits).unwrap());
+        self.store.append_all(session, seq, bodies)
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {

@@ -1,5 +1,8 @@
-//! Nobody is kept waiting without a word, and what breaks one session leaves the
-//! others alone.
+//! Nobody is kept waiting without a word, nothing is thought that nobody waits for,
+//! and what breaks one session leaves the others alone.
+
+mod gone;
+mod large;
 
 use std::sync::Arc;
 
@@ -19,10 +22,11 @@ async fn begin(site: &Site) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_page_that_would_have_to_wait_says_so_and_keeps_the_answer() {
     let store = Arc::new(Unreliable::in_memory());
+    let before = Site::over_any(store.clone());
+    let page = format!("/sessions/{}", begin(&before).await);
+    let question = before.get(&page).await.main("data-question");
+    // A server that has not thought ahead.
     let site = Site::over_any(store.clone());
-    let id = begin(&site).await;
-    let page = format!("/sessions/{id}");
-    let question = site.get(&page).await.main("data-question");
 
     store.fail(Fault::Slow);
     let answer = [("question", question.as_str()), ("answer", "equal")];
@@ -45,6 +49,31 @@ async fn a_page_that_would_have_to_wait_says_so_and_keeps_the_answer() {
     assert_eq!(after.main("data-question"), next["number"].to_string());
     // Sent once more, as a page that lost its connection does, it counts once.
     assert_eq!(site.form(&answers, &answer).await.location(), page);
+    let log = site.get(&format!("/api/v1{page}/log")).await.text;
+    assert_eq!(log.matches("\"event\":\"answered\"").count(), 1);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn what_is_not_kept_yet_is_not_said_to_be() {
+    let store = Arc::new(Unreliable::in_memory());
+    let site = Site::over_any(store.clone());
+    let page = format!("/sessions/{}", begin(&site).await);
+    let question = site.get(&page).await.main("data-question");
+
+    store.fail(Fault::Stuck);
+    let answer = [("question", question.as_str()), ("answer", "equal")];
+    let answers = format!("{page}/answers");
+    assert_eq!(site.form(&answers, &answer).await.location(), page);
+    let waiting = site.get(&page).await;
+    assert_eq!(waiting.status, StatusCode::ACCEPTED);
+    assert!(!waiting.text.contains("are kept"), "{}", waiting.text);
+    assert!(waiting.text.contains("waits for its turn"));
+    assert!(waiting.text.contains("http-equiv=\"refresh\""));
+
+    // Nobody sent it again, and it is kept once that can be.
+    store.fail(Fault::None);
+    let next = site.get(&format!("/api/v1{page}/question")).await.json();
+    assert_ne!(next["number"].to_string(), question);
     let log = site.get(&format!("/api/v1{page}/log")).await.text;
     assert_eq!(log.matches("\"event\":\"answered\"").count(), 1);
 }
