@@ -5,9 +5,13 @@ FROM rust:1-slim-bookworm AS build
 RUN apt-get update && apt-get install -y --no-install-recommends gcc libc6-dev && rm -rf /var/lib/apt/lists/*
 WORKDIR /memrep
 COPY . .
-RUN cargo build --release --locked --bin memrep && strip target/release/memrep
+# `postgres`, where servers are to share a database.
+ARG FEATURES=
+RUN cargo build --release --locked --bin memrep --features "$FEATURES" && strip target/release/memrep
 
 FROM debian:bookworm-slim
+# Whom to trust with a connection to a database elsewhere.
+RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates && rm -rf /var/lib/apt/lists/*
 RUN useradd --system --uid 10001 --home-dir /data --shell /usr/sbin/nologin memrep \
     && install -d -o memrep -g memrep -m 0700 /data
 COPY --from=build /memrep/target/release/memrep /usr/local/bin/memrep
