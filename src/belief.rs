@@ -65,19 +65,47 @@ impl Ending {
     /// Of two atoms that end like this.
     #[inline]
     pub fn of(first: End, second: End) -> Self {
-        match (first.inside, second.inside) {
-            (true, false) => Self::FirstOnly,
-            (false, true) => Self::SecondOnly,
-            (false, false) if first.merit > second.merit => Self::FirstFurther,
-            (false, false) if first.merit < second.merit => Self::SecondFurther,
-            (true, true) if first.merit > second.merit => Self::FirstFreer,
-            (true, true) if first.merit < second.merit => Self::SecondFreer,
-            _ if first.place.is_some() && first.place == second.place => Self::SamePlace,
-            (true, true) => Self::Inside,
-            (false, false) => Self::Outside,
+        // No branches: nobody can guess them, and all that is believed asks this.
+        let order =
+            usize::from(first.merit > second.merit) | usize::from(first.merit < second.merit) << 1;
+        let same = first.place.is_some() & (first.place == second.place);
+        ENDINGS[usize::from(first.inside)][usize::from(second.inside)][order][usize::from(same)]
+    }
+
+    /// Of two atoms in the concept or not, of which the first has more merit, or the
+    /// second, or neither, and which end in the same place or not.
+    const fn told([first, second]: [bool; 2], more: [bool; 2], same: bool) -> Self {
+        match ((first, second), more) {
+            ((true, false), _) => Self::FirstOnly,
+            ((false, true), _) => Self::SecondOnly,
+            ((false, false), [true, _]) => Self::FirstFurther,
+            ((false, false), [_, true]) => Self::SecondFurther,
+            ((true, true), [true, _]) => Self::FirstFreer,
+            ((true, true), [_, true]) => Self::SecondFreer,
+            _ if same => Self::SamePlace,
+            ((true, true), _) => Self::Inside,
+            ((false, false), _) => Self::Outside,
         }
     }
 }
+
+/// By whether the first is in the concept, whether the second is, which has more merit
+/// (a bit for each), and whether they end in the same place.
+const ENDINGS: [[[[Ending; 2]; 4]; 2]; 2] = {
+    let mut endings = [[[[Ending::SamePlace; 2]; 4]; 2]; 2];
+    let mut number = 0;
+    while number < 32 {
+        let [first, second, same] = [number >> 4, number >> 3 & 1, number & 1];
+        let order = number >> 1 & 3;
+        endings[first][second][order][same] = Ending::told(
+            [first == 1, second == 1],
+            [order & 1 == 1, order & 2 == 2],
+            same == 1,
+        );
+        number += 1;
+    }
+    endings
+};
 
 /// Something a teacher said.
 #[derive(Clone, Debug, PartialEq, Eq)]

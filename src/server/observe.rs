@@ -32,7 +32,8 @@ pub(crate) async fn observe(State(app): State<AppState>, request: Request, next:
     let method = method_name(request.method());
     let route = request.extensions().get::<MatchedPath>();
     let route = route.map_or("none", MatchedPath::as_str).to_owned();
-    let span = tracing::info_span!("request", request = id, method, route);
+    // Of the highest level: whatever is told at all tells for which request.
+    let span = tracing::error_span!("request", request = id, method, route);
     let begun = Instant::now();
     let waiting = app.metrics.arrived();
     let answered = CURRENT.scope(id.clone(), next.run(request));

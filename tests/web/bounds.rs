@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode};
+use memrep::oracle::{ScriptedTeacher, Target, TeacherSettings};
 use memrep::server::Reached;
-use serde_json::json;
 
+use crate::api::answer;
 use crate::door::{create_signed, locked, locked_and_reached, sign_in};
 use crate::site::{Reply, Site};
 
@@ -57,13 +58,30 @@ async fn costly_work_is_bounded_for_each_address() {
     }
 }
 
+/// Answers until a rule is on show.
+async fn teach_some(site: &Site, session: &str) {
+    let target = Target::named("tomita:4").unwrap();
+    let mut teacher = ScriptedTeacher::new(&target, TeacherSettings::default());
+    let mut question = site.get(&format!("{session}/question")).await.json();
+    let rule = format!("{session}/automaton?format=json");
+    for _ in 0..30 {
+        if site.get(&rule).await.status == StatusCode::OK {
+            return;
+        }
+        let said = answer(&mut teacher, target.dfa().alphabet(), &question);
+        let reply = site.post(&format!("{session}/answers"), said).await;
+        question = reply.json();
+    }
+    panic!("no rule is on show after 30 answers");
+}
+
 /// What is saved beside something else of the same session has a name of its own.
 #[tokio::test]
 async fn downloads_of_a_session_have_names_of_their_own() {
     let site = Site::in_memory();
     let session = create_signed(&site).await;
     let mut names = BTreeSet::new();
-    site.get(&format!("{session}/question")).await;
+    teach_some(&site, &session).await;
     for path in [
         "automaton?format=json",
         "automaton?format=dot",
@@ -72,17 +90,7 @@ async fn downloads_of_a_session_have_names_of_their_own() {
         "automaton?format=svg",
         "log",
     ] {
-        let reply = site.get(&format!("{session}/{path}")).await;
-        let mut said = reply;
-        for number in 1..30 {
-            if said.status == StatusCode::OK {
-                break;
-            }
-            // No rule is on show before there are answers.
-            let answer = json!({"question": number, "answer": "accept"});
-            site.post(&format!("{session}/answers"), answer).await;
-            said = site.get(&format!("{session}/{path}")).await;
-        }
+        let said = site.get(&format!("{session}/{path}")).await;
         assert_eq!(said.status, StatusCode::OK, "{path}: {}", said.text);
         let name = said.header("content-disposition").to_owned();
         assert!(

@@ -27,12 +27,15 @@ pub(crate) fn locked_and_reached(reached: Reached) -> (Site, Arc<Sqlite>) {
 
 pub(crate) fn locked_with(reached: Reached, limits: Limits) -> (Site, Arc<Sqlite>) {
     let store = Arc::new(Sqlite::in_memory().unwrap());
+    (locked_over(&store, reached, limits), store)
+}
+
+pub(crate) fn locked_over(store: &Arc<Sqlite>, reached: Reached, limits: Limits) -> Site {
     let hash = hash_password(PASSWORD).unwrap();
     store.visits().set_password(Some(&hash)).unwrap();
     let lease = Duration::from_secs(600);
     let state = AppState::with_lease(store.clone(), lease);
-    let state = state.reached(reached).with_limits(limits);
-    (Site::of(state), store)
+    Site::of(state.reached(reached).with_limits(limits))
 }
 
 pub(crate) async fn sign_in(site: &Site) {

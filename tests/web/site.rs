@@ -133,7 +133,8 @@ impl Site {
         self.router.clone().oneshot(request).await.unwrap()
     }
 
-    pub(crate) async fn send(&self, mut request: Request<Body>) -> Reply {
+    /// The request as this browser sends it, with its cookies.
+    pub(crate) fn with_cookies(&self, mut request: Request<Body>) -> Request<Body> {
         let cookies: Vec<String> = (self.cookies().iter())
             .map(|(name, value)| format!("{name}={value}"))
             .collect();
@@ -141,6 +142,11 @@ impl Site {
             let cookies = cookies.join("; ").parse().unwrap();
             request.headers_mut().insert("cookie", cookies);
         }
+        request
+    }
+
+    pub(crate) async fn send(&self, request: Request<Body>) -> Reply {
+        let request = self.with_cookies(request);
         let response = self.router.clone().oneshot(request).await.unwrap();
         for kept in response.headers().get_all("set-cookie") {
             let (cookie, terms) = kept.to_str().unwrap().split_once("; ").unwrap();

@@ -5,21 +5,28 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::memo::{self, Memo};
 use super::script::{Run, Script};
 use super::shape::Shape;
 use crate::belief::{Belief, Tally};
 
-/// A complete table all of whose states are reachable, with what it makes of
-/// what was heard.
+/// A complete table all of whose states are reachable, and how it stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
     pub(crate) delta: Vec<u8>,
     pub(crate) output: Vec<bool>,
-    run: Run,
-    pub(crate) tally: Tally,
-    /// The logarithms of prior and likelihood.
+    pub(crate) standing: Standing,
+}
+
+/// How a table stands to what is believed and to what was heard.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Standing {
+    /// The logarithm of its prior.
     prior: f64,
+    /// The logarithm of the likelihood.
     pub(crate) likelihood: f64,
+    /// What it makes of what was heard.
+    pub(crate) tally: Tally,
 }
 
 /// What all chains share.
@@ -30,36 +37,37 @@ pub(crate) struct Ground<'a> {
     pub(crate) symbols: usize,
 }
 
+impl Ground<'_> {
+    /// How a table stands all of whose states are reachable.
+    fn judge(&self, delta: &[u8], output: &[bool], run: &mut Run) -> Standing {
+        self.script.run(delta, output, run);
+        let tally = self.script.tally(delta, output, run);
+        Standing {
+            prior: self.shape.log_prior(delta, output.len()),
+            likelihood: self.belief.log_chance(&tally),
+            tally,
+        }
+    }
+}
+
 impl Machine {
     pub(crate) fn new(delta: Vec<u8>, output: Vec<bool>, ground: &Ground<'_>) -> Self {
-        let mut machine = Self {
+        let standing = ground.judge(&delta, &output, &mut Run::default());
+        Self {
             delta,
             output,
-            run: Run::default(),
-            tally: Tally::default(),
-            prior: 0.0,
-            likelihood: 0.0,
-        };
-        machine.prior = ground.shape.log_prior(&machine.delta, machine.states());
-        machine.hear(ground);
-        machine
+            standing,
+        }
     }
 
     /// The logarithm of its share of the posterior, up to a number that all
     /// share.
     pub(crate) fn log_chance(&self) -> f64 {
-        self.prior + self.likelihood
+        self.standing.prior + self.standing.likelihood
     }
 
     pub(crate) fn states(&self) -> usize {
         self.output.len()
-    }
-
-    /// Judges anew what was heard.
-    pub(crate) fn hear(&mut self, ground: &Ground<'_>) {
-        (ground.script).run(&self.delta, &self.output, &mut self.run);
-        self.tally = ground.script.tally(&self.delta, &self.output, &self.run);
-        self.likelihood = ground.belief.log_chance(&self.tally);
     }
 }
 
@@ -68,12 +76,15 @@ const COPIED: f64 = 0.6;
 /// The chance that a new state's output is copied.
 const SAME_OUTPUT: f64 = 0.7;
 
-/// Moves a machine.
+/// Moves machines on one ground.
 #[derive(Default)]
 pub(crate) struct Mover {
     spare: Option<Machine>,
+    run: Run,
     reached: Vec<bool>,
     stack: Vec<u8>,
+    /// None of what not all states of can be reached.
+    memo: Memo<Option<Standing>, 12>,
 }
 
 impl Mover {
@@ -101,25 +112,35 @@ impl Mover {
             _ => merge(&mut other, ground.symbols, rng),
         };
         let accepted = bonus.is_some_and(|bonus| {
-            let moved = other.delta != machine.delta;
-            if moved && !self.is_reachable(&other, ground.symbols) {
+            let Some(standing) = self.judge(&other, ground) else {
                 return false;
-            }
-            other.prior = if moved {
-                ground.shape.log_prior(&other.delta, other.states())
-            } else {
-                machine.prior
             };
-            let allowed = bonus + other.prior - machine.prior;
-            other.hear(ground);
-            let draw = rng.random::<f64>().ln();
-            draw < allowed + power * (other.likelihood - machine.likelihood)
+            let allowed = bonus + standing.prior - machine.standing.prior;
+            let gained = standing.likelihood - machine.standing.likelihood;
+            other.standing = standing;
+            rng.random::<f64>().ln() < allowed + power * gained
         });
         if accepted {
             std::mem::swap(machine, &mut other);
         }
         self.spare = Some(other);
         accepted
+    }
+
+    /// How a table stands that may have been judged before: chains come back to what
+    /// they refused. None if not all of its states are reachable.
+    fn judge(&mut self, machine: &Machine, ground: &Ground<'_>) -> Option<Standing> {
+        let key = memo::key(&machine.delta, &machine.output);
+        if let Some(known) = key.and_then(|key| self.memo.get(key)) {
+            return known;
+        }
+        let standing = self
+            .is_reachable(machine, ground.symbols)
+            .then(|| ground.judge(&machine.delta, &machine.output, &mut self.run));
+        if let Some(key) = key {
+            self.memo.keep(key, standing);
+        }
+        standing
     }
 
     fn is_reachable(&mut self, machine: &Machine, symbols: usize) -> bool {

@@ -5,6 +5,8 @@
 
 mod chain;
 mod guide;
+mod memo;
+mod places;
 mod script;
 mod shape;
 mod visits;
@@ -18,6 +20,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::chain::{Ground, Machine, Mover};
 use self::guide::Guide;
+use self::places::Places;
 use self::script::Script;
 pub(crate) use self::script::Step;
 use self::shape::Shape;
@@ -77,6 +80,7 @@ pub(crate) struct Particles {
 
 /// What goes on from one answer to the next.
 struct Stage {
+    /// The table at which every chain is, by ladder and level.
     places: Places,
     /// The size that the guide knows to be needed.
     at_least: usize,
@@ -84,15 +88,15 @@ struct Stage {
     astray: usize,
 }
 
-/// The table at which every chain is, by ladder and level.
-type Places = Vec<[(Vec<u8>, Vec<bool>); LEVELS.len()]>;
-
 impl Particles {
     /// Chains that heard nothing.
     pub(crate) fn new(alphabet: &Alphabet, most: usize, decay: f64, seed: u64) -> Self {
         let symbols = alphabet.len();
-        let trivial = |number: usize| (vec![0; symbols], vec![number.is_multiple_of(2)]);
-        let places = (0..LADDERS).map(|_| std::array::from_fn(trivial)).collect();
+        let trivial = |chain: usize| {
+            let accepts = (chain % LEVELS.len()).is_multiple_of(2);
+            (vec![0; symbols], vec![accepts])
+        };
+        let places = Places::new(symbols, (0..LADDERS * LEVELS.len()).map(trivial));
         Self {
             symbols,
             seed,
@@ -164,12 +168,15 @@ impl Particles {
             belief: &self.belief,
             symbols: self.symbols,
         };
-        let machine = |(delta, output): &(Vec<u8>, Vec<bool>)| {
-            Machine::new(delta.clone(), output.clone(), &ground)
-        };
         let start = self.past.last().expect("the start is never taken back");
-        let mut machines: Vec<[Machine; LEVELS.len()]> = (start.places.iter())
-            .map(|ladder| ladder.each_ref().map(machine))
+        let mut at = start.places.tables();
+        let mut machines: Vec<[Machine; LEVELS.len()]> = (0..LADDERS)
+            .map(|_| {
+                std::array::from_fn(|_| {
+                    let (delta, output) = at.next().expect("every chain is somewhere");
+                    Machine::new(delta, output, &ground)
+                })
+            })
             .collect();
         let mut mover = Mover::default();
         let mut visits = Visits::default();
@@ -193,9 +200,8 @@ impl Particles {
         let met = visits.shares();
         migrate(&mut machines);
         let place = |machine: Machine| (machine.delta, machine.output);
-        let places = machines.into_iter().map(|ladder| ladder.map(place));
         let stage = Stage {
-            places: places.collect(),
+            places: Places::new(self.symbols, machines.into_iter().flatten().map(place)),
             at_least: self.guide.at_least(),
             astray,
         };
@@ -248,7 +254,7 @@ fn travel(
         }
         // Neighbours exchange their places, even and odd in turn.
         for level in (leg % 2..LEVELS.len() - 1).step_by(2) {
-            let gain = ladder[level + 1].likelihood - ladder[level].likelihood;
+            let gain = ladder[level + 1].standing.likelihood - ladder[level].standing.likelihood;
             let chance = (LEVELS[level] - LEVELS[level + 1]) * gain;
             if rng.random::<f64>().ln() < chance {
                 ladder.swap(level, level + 1);

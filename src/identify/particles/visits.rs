@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::chain::Machine;
+use super::memo::{self, Memo};
 use super::{AGREEING, LADDERS, NEAR, numberings};
 use crate::identify::completion::Table;
 use crate::identify::spread::{breadth_first, is_minimal};
@@ -27,6 +28,8 @@ pub(super) struct Visits {
     seen: BTreeMap<Table, (f64, u32)>,
     /// The largest such logarithm of every ladder.
     best: [Option<f64>; LADDERS],
+    /// What every ladder visited lately: once is as good as often.
+    lately: [Memo<(), 8>; LADDERS],
 }
 
 /// Of automata that are alike, how many were seen at all, by one ladder only, and
@@ -42,8 +45,15 @@ impl Visits {
     /// Takes note of a visit; of automata that are refuted or not minimal none is
     /// taken.
     pub(super) fn add(&mut self, ladder: usize, machine: &Machine) {
-        if machine.tally.is_refuted() {
+        if machine.standing.tally.is_refuted() {
             return;
+        }
+        if let Some(key) = memo::key(&machine.delta, &machine.output) {
+            let lately = &mut self.lately[ladder];
+            if lately.get(key).is_some() {
+                return;
+            }
+            lately.keep(key, ());
         }
         let delta = machine.delta.iter().map(|&t| u32::from(t)).collect();
         let table: Table = (delta, machine.output.clone());
