@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::driver::{Wishes, with};
 use crate::house::House;
 use crate::page::{Page, fill, press, script, typed};
+use crate::studio::open;
 
 /// Names that would like to be more. Each would leave a `blink` or set `window.hit`.
 const NAMES: [&str; 8] = [
@@ -143,7 +144,10 @@ async fn names_are_text_on_every_page() {
         let door = Page::now(client).await;
         door.click(client, "main button").await;
         let place = client.current_url().await.unwrap().path().to_owned();
-        is_text(client, &house, &place, &[NAMES[1]]).await;
+        for part in ["", "/history", "/practice"] {
+            let path = format!("{place}{part}");
+            is_text(client, &house, &path, &[NAMES[1]]).await;
+        }
         client.goto(&house.at("/")).await.unwrap();
         press(client, ".uploads summary").await;
         for name in NAMES {
@@ -154,6 +158,52 @@ async fn names_are_text_on_every_page() {
             assert_eq!(found["bad"], json!([]), "{name}");
             assert_eq!(typed(client, "#symbols").await, name);
         }
+        contradict(client, &house).await;
+        for (turn, name) in NAMES.iter().enumerate() {
+            open(client, &words(turn).to_string()).await;
+            let studio = Page::now(client).await;
+            assert_eq!(studio.kind, "studio");
+            let found = script(client, LOOK).await;
+            assert_eq!(found["bad"], json!([]), "the studio with {name}");
+            assert_eq!(typed(client, "#title").await, *name);
+            let place = format!("/sign-in?to=/{}", escaped(name));
+            is_text(client, &house, &place, &[]).await;
+        }
     })
     .await;
+}
+
+/// Answers that no rule of one state explains, and the page that says so.
+async fn contradict(client: &Client, house: &House) {
+    let mut task = words(5);
+    task["max_states"] = 1.into();
+    let new = json!({"task": task, "comparison_cost": "inf"});
+    let begun = call(client, "POST", "/api/v1/sessions", new).await;
+    let session = begun["id"].as_str().unwrap_or_else(|| panic!("{begun}"));
+    let api = format!("/api/v1/sessions/{session}");
+    for _ in 0..5 {
+        let question = call(client, "GET", &format!("{api}/question"), Value::Null).await;
+        let mut answer = json!({"question": question["number"], "answer": "reject"});
+        match question["kind"].as_str().unwrap() {
+            "membership" => {}
+            "equivalence" => {
+                answer["answer"] = "counterexample".into();
+                answer["word"] = json!(["b"]);
+                answer["label"] = false.into();
+            }
+            "conflict" => {
+                is_text(client, house, &format!("/sessions/{session}"), &[NAMES[5]]).await;
+                return;
+            }
+            other => panic!("{other}: {question}"),
+        }
+        let reply = call(client, "POST", &format!("{api}/answers"), answer).await;
+        assert_eq!(reply["error"], Value::Null, "{reply}");
+    }
+    panic!("no contradiction");
+}
+
+/// A text as part of an address.
+fn escaped(text: &str) -> String {
+    text.bytes().map(|byte| format!("%{byte:02X}")).collect()
 }

@@ -4,6 +4,7 @@
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
 use fantoccini::{Client, Locator};
 use memrep::task::{Task, WorldText};
+use serde_json::Value;
 
 use crate::driver::{Browser, Wishes, wait, with};
 use crate::house::House;
@@ -43,6 +44,19 @@ async fn drag(client: &Client, from: &str, to: &str) {
             button: MOUSE_BUTTON_LEFT,
         });
     client.perform_actions(mouse).await.unwrap();
+}
+
+/// Opens the text of a task file in the studio.
+pub(crate) async fn open(client: &Client, text: &str) {
+    let sent = "const form = Object.assign(document.createElement('form'),
+            { method: 'post', action: '/studio', enctype: 'multipart/form-data' });
+        for (const [name, value] of [['text', arguments[0]], ['do', 'open']]) {
+            form.append(Object.assign(document.createElement('textarea'), { name, value }));
+        }
+        document.querySelector('main').remove();
+        document.body.append(form);
+        form.submit();";
+    client.execute(sent, vec![Value::from(text)]).await.unwrap();
 }
 
 #[tokio::test]

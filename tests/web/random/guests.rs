@@ -11,7 +11,7 @@ use super::{ANSWERS, Caller};
 impl Caller {
     pub(super) async fn people(&mut self) {
         let path = format!("/api/v1/sessions/{}/people", self.id);
-        match self.random.random_range(0..6) {
+        match self.random.random_range(0..8) {
             0 => {
                 let name = self.some(&[
                     "Ada",
@@ -53,7 +53,7 @@ impl Caller {
     /// What an invited program sends.
     async fn by_script(&mut self, key: &str) {
         let door = format!("/api/v1/answer/{key}");
-        if self.one_in(5) {
+        if self.one_in(3) {
             let body = json!({"question": self.number()});
             self.json(Method::POST, format!("{door}/retractions"), body)
                 .await;

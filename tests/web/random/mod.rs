@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode};
-use memrep::server::routes::ROUTES;
+use memrep::server::routes::{ROUTES, Route};
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -23,7 +23,7 @@ use crate::invariants::check;
 use crate::site::{Reply, Site};
 
 /// How many are sent where nothing else is said.
-const CALLS: usize = 1500;
+const CALLS: usize = 2500;
 /// The calls of one session, before another is begun.
 const LENGTH: usize = 50;
 

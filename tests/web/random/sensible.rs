@@ -96,7 +96,7 @@ impl Caller {
     /// Something that somebody with good intentions sends.
     pub(super) async fn sensible(&mut self) {
         let path = format!("/api/v1/sessions/{}", self.id);
-        match self.random.random_range(0..16) {
+        match self.random.random_range(0..20) {
             0..6 => {
                 let question = self.question().await;
                 let reply = self.reply_to(&question);
@@ -134,9 +134,9 @@ impl Caller {
             }
             10 => self.conflict().await,
             11 => self.both_at_once().await,
-            12 => self.people().await,
-            13 => self.page_form().await,
-            14 if self.one_in(4) => self.live().await,
+            12..15 => self.people().await,
+            15 => self.page_form().await,
+            16 if self.one_in(4) => self.live().await,
             _ => self.look_around().await,
         }
     }
@@ -218,6 +218,7 @@ impl Caller {
             format!("/sessions/{id}/automaton.svg"),
             format!("/sessions/{id}/media/a.png"),
             format!("/api/v1/sessions/{id}"),
+            format!("/api/v1/sessions/{id}/log"),
             format!("/api/v1/sessions/{id}/samples"),
             format!("/api/v1/sessions/{id}/concept"),
             format!("/api/v1/sessions/{id}/people"),
@@ -227,7 +228,7 @@ impl Caller {
             "/".to_owned(),
             "/healthz".to_owned(),
         ];
-        if self.one_in(2) {
+        if self.one_in(4) {
             let format = self.some(&["json", "dot", "dot-people", "hoa", "svg", "exe"]);
             let part = self.some(&["whole", "learned", "half"]);
             let path = format!("/api/v1/sessions/{id}/automaton?format={format}&part={part}");
