@@ -109,8 +109,9 @@ impl Caller {
                 }
             }
             _ => {
-                let page = self.some(&["", "/history", "/practice", "/media/a.png"]);
-                self.get(format!("{home}{page}")).await;
+                for page in ["", "/history", "/practice", "/media/a.png"] {
+                    self.get(format!("{home}{page}")).await;
+                }
             }
         }
     }

@@ -23,7 +23,7 @@ use crate::invariants::check;
 use crate::site::{Reply, Site};
 
 /// How many are sent where nothing else is said.
-const CALLS: usize = 2500;
+const CALLS: usize = 2000;
 /// The calls of one session, before another is begun.
 const LENGTH: usize = 50;
 
