@@ -51,8 +51,22 @@ impl Leases {
         }
         let now = Instant::now();
         let mut held = self.held();
-        let leases = held.entry(id).or_default();
+        let mut leases = held.remove(&id).unwrap_or_default();
         leases.retain(|lease| session.is_open(lease.number));
+        let turn = self.choose(&mut leases, session, person, now);
+        if !leases.is_empty() {
+            held.insert(id, leases);
+        }
+        turn
+    }
+
+    fn choose(
+        &self,
+        leases: &mut Vec<Lease>,
+        session: &Session,
+        person: u32,
+        now: Instant,
+    ) -> Option<Turn> {
         let open: Vec<u32> = session.open_to(person).collect();
         let own = leases.iter().find(|lease| lease.person == person);
         if let Some(own) = own.filter(|own| open.contains(&own.number)) {
