@@ -2,12 +2,6 @@
 
 use std::process::ExitCode;
 
-/// A server runs for months, and what sessions leave behind is in pieces: with the
-/// usual allocator of Linux its memory goes on growing.
-#[cfg(feature = "server")]
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 fn main() -> ExitCode {
     memrep::cli::main()
 }
