@@ -68,8 +68,8 @@ impl Ending {
         // No branches: nobody can guess them, and all that is believed asks this.
         let order =
             usize::from(first.merit > second.merit) | usize::from(first.merit < second.merit) << 1;
-        let same = first.place.is_some() & (first.place == second.place);
-        ENDINGS[usize::from(first.inside)][usize::from(second.inside)][order][usize::from(same)]
+        let same = usize::from(first.place.is_some()) & usize::from(first.place == second.place);
+        ENDINGS[usize::from(first.inside)][usize::from(second.inside)][order][same]
     }
 
     /// Of two atoms in the concept or not, of which the first has more merit, or the

@@ -311,6 +311,9 @@ fn whims_leave_the_session_its_log() {
                         let again = kept.session.repeat(person, due, &reply);
                         kept.act(again);
                         assert_eq!(counts, kept.session.counts(), "it tells of the person");
+                        // Sent once more, by a hand that saw no reply.
+                        let twice = kept.session.say(person, due, &reply, None);
+                        assert!(matches!(twice, Ok(Decision::Already(_))), "{twice:?}");
                         repeats += 1;
                     } else if let Some(number) = kept.question_for(person) {
                         let question = kept.asked(number);

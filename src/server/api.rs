@@ -185,8 +185,11 @@ async fn answer(
         // Somebody else was faster: what is asked now comes along.
         Err(error @ WebError::Refused(Refusal::Closed { .. })) => {
             let view = |session: &Session| session.describe(session.position());
-            let question = app.teaching.look(id, view).await?;
-            Ok(ApiError(error).beside("question", &question))
+            // If that takes long, it can be asked for.
+            match app.teaching.look(id, view).await {
+                Ok(question) => Ok(ApiError(error).beside("question", &question)),
+                Err(_) => Err(error.into()),
+            }
         }
         Err(error) => Err(error.into()),
     }

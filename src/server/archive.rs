@@ -10,7 +10,7 @@ use super::error::WebError;
 use super::metrics::Metrics;
 use super::upload::Pools;
 use crate::session::{Corrupt, Event, Session};
-use crate::store::{SessionId, Store, StoreError};
+use crate::store::{Entry, SessionId, Store, StoreError};
 
 /// The store, and what is in memory of its uploads.
 pub(crate) struct Archive {
@@ -119,8 +119,34 @@ impl Archive {
                 self.metrics.appended(events, begun.elapsed());
                 Ok(true)
             }
-            Err(StoreError::Taken { .. }) => Ok(false),
+            Err(StoreError::Taken { .. }) => self.has(id, first, &bodies),
             Err(error) => Err(WebError::internal(error)),
+        }
+    }
+
+    /// Whether a session's log goes on with these entries from there. They are ours: a
+    /// store that was out of reach for a moment may have kept what it could not say
+    /// that it kept. Or another writer decided the very same, which then happened once.
+    fn has(&self, id: &SessionId, first: u64, bodies: &[&str]) -> Result<bool, WebError> {
+        let there = match first {
+            0 => self.store.read(id),
+            _ => self.store.read_from(id, first),
+        };
+        let there = there.map_err(WebError::internal)?;
+        let same = |(entry, body): (&Entry, &&str)| entry.body == **body;
+        Ok(there.len() >= bodies.len() && there.iter().zip(bodies).all(same))
+    }
+
+    /// What became of the beginning of a new session with this first entry.
+    pub(crate) fn begun(
+        &self,
+        id: &SessionId,
+        body: &str,
+        kept: Result<(), StoreError>,
+    ) -> Result<(), WebError> {
+        match kept {
+            Err(StoreError::Taken { .. }) if self.has(id, 0, &[body])? => Ok(()),
+            other => other.map_err(WebError::internal),
         }
     }
 }

@@ -2,9 +2,9 @@
 //! done at a time; and who waits for what is done there. Must not know what is done.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::Mutex as AsyncMutex;
 
@@ -24,6 +24,10 @@ pub(crate) struct Desk {
     waiting: AtomicUsize,
     unsettled: AtomicUsize,
     stop: Mutex<Stop>,
+    /// When the last who waited went.
+    left: Mutex<Option<Instant>>,
+    /// With so many entries the session has no question beside those that are open.
+    nothing_beside: AtomicU64,
 }
 
 impl Desk {
@@ -60,6 +64,42 @@ impl Desk {
         self.unsettled.load(Ordering::Acquire) == 0
     }
 
+    /// Whether nobody has waited for so long.
+    pub(crate) fn is_forsaken(&self, grace: Duration) -> bool {
+        let left = *self.left.lock().unwrap_or_else(PoisonError::into_inner);
+        self.is_abandoned() && left.is_some_and(|left| left.elapsed() >= grace)
+    }
+
+    /// Ends what is done here after a while, should nobody wait for it now or then.
+    pub(crate) fn end_unless_waited_for(self: &Arc<Self>, grace: Duration) {
+        if !self.is_abandoned() || !self.is_at_work() {
+            return;
+        }
+        let Ok(runtime) = tokio::runtime::Handle::try_current() else {
+            return;
+        };
+        let desk = Arc::clone(self);
+        let stop = desk.stop().clone();
+        runtime.spawn(async move {
+            tokio::time::sleep(grace).await;
+            // Other work may have begun since: that has a stop of its own.
+            if desk.is_abandoned() {
+                stop.set();
+            }
+        });
+    }
+
+    /// Takes note that there is no question beside those that are open, as the session
+    /// stands with so many entries.
+    pub(crate) fn found_nothing_beside(&self, entries: u64) {
+        self.nothing_beside.store(entries, Ordering::Release);
+    }
+
+    /// Whether there may be one.
+    pub(crate) fn may_have_more(&self, entries: u64) -> bool {
+        self.nothing_beside.load(Ordering::Acquire) != entries
+    }
+
     fn is_abandoned(&self) -> bool {
         self.waiting.load(Ordering::Acquire) == 0
     }
@@ -92,21 +132,8 @@ impl Drop for Waiting {
     /// Ends what nobody waits for, after a while.
     fn drop(&mut self) {
         self.desk.waiting.fetch_sub(1, Ordering::AcqRel);
-        if !self.desk.is_abandoned() || !self.desk.is_at_work() {
-            return;
-        }
-        let Ok(runtime) = tokio::runtime::Handle::try_current() else {
-            return;
-        };
-        let (desk, grace) = (Arc::clone(&self.desk), self.grace);
-        let stop = desk.stop().clone();
-        runtime.spawn(async move {
-            tokio::time::sleep(grace).await;
-            // Other work may have begun since: that has a stop of its own.
-            if desk.is_abandoned() {
-                stop.set();
-            }
-        });
+        *(self.desk.left.lock()).unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+        self.desk.end_unless_waited_for(self.grace);
     }
 }
 

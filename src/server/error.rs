@@ -64,6 +64,9 @@ pub(crate) enum WebError {
     Slow,
     /// What was sent waits for its turn: it is not kept yet.
     Waiting,
+    /// What was sent was not looked at, because who sent it could not be told soon
+    /// enough.
+    Unheard,
     /// There is no room for what was to be kept.
     Full(String),
     /// The store is elsewhere, and does not answer.
@@ -140,7 +143,9 @@ impl WebError {
             Self::Foreign | Self::NoPassword => StatusCode::FORBIDDEN,
             Self::SignIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
             Self::TooMany(_) | Self::Besieged(_) => StatusCode::TOO_MANY_REQUESTS,
-            Self::Slow | Self::Waiting | Self::Away(_) => StatusCode::SERVICE_UNAVAILABLE,
+            Self::Slow | Self::Waiting | Self::Unheard | Self::Away(_) => {
+                StatusCode::SERVICE_UNAVAILABLE
+            }
             Self::Full(_) => StatusCode::INSUFFICIENT_STORAGE,
             Self::Corrupt(_) | Self::Internal(_) => StatusCode::INTERNAL_SERVER_ERROR,
         }
@@ -187,6 +192,7 @@ impl WebError {
             Self::TooLargeToShow(_) => "automaton_too_large",
             Self::Slow => "still_thinking",
             Self::Waiting => "not_taken_yet",
+            Self::Unheard => "not_taken",
             Self::Full(_) => "disk_full",
             Self::Away(_) => "store_unreachable",
             Self::Corrupt(_) => "log_unreadable",
@@ -262,6 +268,10 @@ impl WebError {
             }
             Self::Waiting => {
                 "What you sent waits for its turn: what was sent to this session before is still being thought about, or the disk is slow. Send it again in a moment: it will count once."
+                    .to_owned()
+            }
+            Self::Unheard => {
+                "What you just sent was not taken: the session by which you were invited is busy. Send it again in a moment."
                     .to_owned()
             }
             Self::Full(_) => {
@@ -374,7 +384,7 @@ impl ApiError {
         let mut response = (self.0.status(), Json(body)).into_response();
         let headers = response.headers_mut();
         match self.0 {
-            WebError::Slow | WebError::Waiting => {
+            WebError::Slow | WebError::Waiting | WebError::Unheard => {
                 headers.insert(RETRY_AFTER, HeaderValue::from_static("1"));
             }
             WebError::Away(_) => {

@@ -74,67 +74,65 @@ impl fmt::Display for Place {
 }
 
 impl Guest {
-    /// Who has this key.
+    /// Who has this key; the session [has yet to admit](Self::admit) them.
     ///
     /// # Errors
     ///
-    /// If nobody answers with it any more.
+    /// If nobody has it.
     pub(crate) async fn of(app: &AppState, key: &str) -> Result<Self, WebError> {
-        let key: InviteKey = key.parse().map_err(|_| WebError::NotInvited)?;
-        match Self::lead(app, &key).await? {
-            (guest, None) => Ok(guest),
-            // Who teaches alone does that in their own session.
-            (_, Some(_)) => Err(WebError::NotInvited),
-        }
-    }
-
-    /// Who has this key, and the session that they have to themselves, if they have.
-    async fn lead(app: &AppState, key: &InviteKey) -> Result<(Self, Option<String>), WebError> {
-        let (session, person) = app.teaching.invited(*key).await?;
+        let key = self::key(key)?;
+        let (session, person) = app.teaching.invited(key).await?;
         let place = Place::of(&key.digest()).ok_or(WebError::NotInvited)?;
-        let guest = Self {
+        Ok(Self {
             place,
             session,
             person,
-        };
-        let own = guest.stays(app).await?;
-        Ok((guest, own))
+        })
     }
 
-    /// Who visits at this place.
+    /// Who visits at this place; the session [has yet to admit](Self::admit) them.
     ///
     /// # Errors
     ///
-    /// If that is nobody, or nobody any more.
+    /// If that is nobody.
     async fn at(app: &AppState, place: &str, headers: &HeaderMap) -> Result<Self, WebError> {
         let known = Place::of(place).filter(|_| place.len() == Place::DIGITS);
         let known = known.ok_or(WebError::NotInvited)?;
         let (session, person) = owner::invited(app, headers, place).await?;
-        let guest = Self {
+        Ok(Self {
             place: known,
             session,
             person,
-        };
-        match guest.stays(app).await? {
-            None => Ok(guest),
+        })
+    }
+
+    /// Lets them in if they still answer for the session itself. Whoever acts is
+    /// admitted in the same turn in which that is decided on: one of its own would be
+    /// waited for, and what was sent could get lost meanwhile.
+    ///
+    /// # Errors
+    ///
+    /// If they left, or teach alone in a session of their own.
+    pub(crate) fn admit(&self, session: &Session) -> Result<(), WebError> {
+        match self.known(session)? {
+            None => Ok(()),
             Some(_) => Err(WebError::NotInvited),
         }
     }
 
     /// The session that they have to themselves, if they have one.
-    ///
-    /// # Errors
-    ///
-    /// If they are no longer of those who answer.
-    async fn stays(&self, app: &AppState) -> Result<Option<String>, WebError> {
-        let person = self.person;
-        let view = move |session: &Session| {
-            let known = session.panel().people().get(&person);
-            let known = known.filter(|person| !person.left);
-            known.map(|person| person.session.clone())
-        };
-        let known = app.teaching.look(self.session, view).await?;
+    fn known(&self, session: &Session) -> Result<Option<String>, WebError> {
+        let known = session.panel().people().get(&self.person);
+        let known = known.filter(|person| !person.left);
+        let known = known.map(|person| person.session.clone());
         known.ok_or(WebError::NotInvited)
+    }
+
+    /// Whether there is something new for this person to do, were it put.
+    pub(crate) fn wants(&self, session: &Session, leases: &Leases) -> bool {
+        // Each of them may have one at hand, and as many may wait for others.
+        let most = 2 * session.panel().people().len();
+        leases.turn(self.session, session, self.person).is_none() && session.open().count() < most
     }
 
     fn home(&self) -> String {
@@ -143,21 +141,6 @@ impl Guest {
 
     fn bar(&self, session: &Session) -> Bar {
         Bar::invited(self.home(), session, self.person)
-    }
-}
-
-/// Sees to it that there is something for this person to do, if there can be: the
-/// entry that puts another question.
-pub(crate) fn another(session: &Session, leases: &Leases, guest: Guest) -> Decision {
-    // Each of them may have one at hand, and as many may wait for others.
-    let most = 2 * session.panel().people().len();
-    let further = match leases.turn(guest.session, session, guest.person) {
-        None if session.open().count() < most => session.further(),
-        _ => None,
-    };
-    match further {
-        Some(event) => Decision::Append(event),
-        None => Decision::Already(Position::Thinking),
     }
 }
 
@@ -238,8 +221,10 @@ async fn door(
     State(app): State<AppState>,
     Path(text): Path<String>,
 ) -> Result<Response, PageError> {
+    let guest = Guest::of(&app, &text).await?;
+    let view = move |session: &Session| guest.known(session);
+    app.teaching.look(guest.session, view).await??;
     let key = key(&text)?;
-    Guest::lead(&app, &key).await?;
     Ok(render(&DoorPage {
         shell: Shell::plain("You are invited"),
         key,
@@ -253,7 +238,9 @@ async fn enter(
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
     let key = key(&text)?;
-    let (guest, own) = Guest::lead(&app, &key).await?;
+    let guest = Guest::of(&app, &text).await?;
+    let view = move |session: &Session| guest.known(session);
+    let own = app.teaching.look(guest.session, view).await??;
     let home = own.map_or_else(|| guest.home(), |own| format!("/sessions/{own}"));
     let answer = Redirect::to(&home).into_response();
     let place = guest.place.to_string();
@@ -273,9 +260,12 @@ async fn show(
 async fn put(app: &AppState, guest: Guest, notice: Option<String>) -> Result<Response, WebError> {
     let leases = app.teaching.leases();
     let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
-    let decide = move |session: &Session| Ok(another(session, &deciding, guest));
+    let admit = move |session: &Session| guest.admit(session);
+    let wants = move |session: &Session| guest.wants(session, &deciding);
     let view = move |session: &Session, _: &Position| page(guest, session, &viewing, notice);
-    app.teaching.act(guest.session, decide, view).await
+    (app.teaching)
+        .put_another(guest.session, admit, wants, view)
+        .await
 }
 
 /// What a person says: the entry to append.
@@ -348,6 +338,10 @@ async fn done(
     guest: Guest,
     decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
 ) -> Result<Response, PageError> {
+    let decide = move |session: &Session| {
+        guest.admit(session)?;
+        decide(session)
+    };
     match app.teaching.act(guest.session, decide, |_, _| ()).await {
         Ok(()) | Err(WebError::Slow | WebError::Waiting) => {
             app.teaching.leases().release(guest.session, guest.person);
@@ -369,6 +363,7 @@ async fn history(
 ) -> Result<Response, PageError> {
     let guest = Guest::at(&app, &place, &headers).await?;
     let view = move |session: &Session| {
+        guest.admit(session)?;
         let bar = guest.bar(session);
         let answered = session.panel().answered_by(guest.person).iter().rev();
         let items = answered.filter_map(|&number| {
@@ -378,15 +373,15 @@ async fn history(
             past.others.clear();
             Some(past)
         });
-        render(&HistoryPage {
+        Ok::<_, WebError>(render(&HistoryPage {
             shell: Shell::of(bar.clone()),
             bar,
             notice: None,
             items: items.collect(),
             examples: Vec::new(),
-        })
+        }))
     };
-    Ok(app.teaching.look(guest.session, view).await?)
+    Ok(app.teaching.look(guest.session, view).await??)
 }
 
 async fn practise(
@@ -395,7 +390,10 @@ async fn practise(
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
     let guest = Guest::at(&app, &place, &headers).await?;
-    let view = move |session: &Session| practice::page(guest.bar(session), session, None);
+    let view = move |session: &Session| {
+        guest.admit(session)?;
+        practice::page(guest.bar(session), session, None)
+    };
     Ok(app.teaching.look(guest.session, view).await??)
 }
 
@@ -408,6 +406,7 @@ async fn practised(
     let guest = Guest::at(&app, &place, &headers).await?;
     let form = read_form(fields)?;
     let view = move |session: &Session| {
+        guest.admit(session)?;
         practice::page(guest.bar(session), session, Some(form.text("answer")))
     };
     Ok(app.teaching.look(guest.session, view).await??)
@@ -419,6 +418,8 @@ async fn follow(
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
     let guest = Guest::at(&app, &place, &headers).await?;
+    let view = move |session: &Session| guest.admit(session);
+    app.teaching.look(guest.session, view).await??;
     let seat = Seat::Invited { place };
     let news = live::news(&app, guest.session, headers, seat).await?;
     Ok(news.into_response())
@@ -430,5 +431,7 @@ async fn file(
     headers: HeaderMap,
 ) -> Result<Response, PageError> {
     let guest = Guest::at(&app, &place, &headers).await?;
+    let view = move |session: &Session| guest.admit(session);
+    app.teaching.look(guest.session, view).await??;
     Ok(media::serve(&app, guest.session, path, &headers).await?)
 }

@@ -1,6 +1,8 @@
 //! The owner's page about the people who answer: whom to invite, what they are to
 //! answer, how they do it and how far they agree.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use askama::Template;
 use axum::Router;
 use axum::extract::{Path, State};
@@ -17,8 +19,8 @@ use super::pages::{Fields, read_form};
 use super::past::{Choice, PastView, said};
 use super::views::{Bar, Shell, render};
 use crate::session::{
-    Agreement, Concept, Decision, MAX_ANSWERS, MAX_NAME, Malformed, Pooling, Position, Session,
-    Terms,
+    Agreement, Concept, Decision, Event, MAX_ANSWERS, MAX_NAME, Malformed, Pooling, Position,
+    Session, Terms,
 };
 use crate::store::{InviteKey, SessionId};
 
@@ -280,18 +282,22 @@ pub(crate) async fn invited(app: &AppState, id: SessionId, name: String) -> Resu
         Some((task, setup)) => Some(app.teaching.create(task, setup).await?),
         None => None,
     };
+    let chosen: Arc<Mutex<Option<u32>>> = Arc::default();
+    let choice = Arc::clone(&chosen);
     let decide = move |session: &Session| {
         let own = own.map(|own| own.to_string());
-        Ok(session.invite(&name, own)?)
+        let decision = session.invite(&name, own)?;
+        if let Decision::Append(Event::Invited { person, .. }) = &decision {
+            *choice.lock().unwrap_or_else(PoisonError::into_inner) = Some(*person);
+        }
+        Ok(decision)
     };
-    let view = |session: &Session, _: &_| {
-        session
-            .panel()
-            .people()
-            .last_key_value()
-            .map(|(person, _)| *person)
-    };
-    let person = app.teaching.act(id, decide, view).await?;
+    match app.teaching.act(id, decide, |_, _| ()).await {
+        // They are invited, whatever else the session thinks about.
+        Ok(()) | Err(WebError::Slow) => {}
+        Err(error) => return Err(error),
+    }
+    let person = *chosen.lock().unwrap_or_else(PoisonError::into_inner);
     let person = person.ok_or_else(|| WebError::internal("nobody was invited"))?;
     Ok(match own {
         // Where everybody comes in, the session's own address is enough.

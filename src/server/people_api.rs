@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::api::{Answer, Body, read_body, session_id};
 use super::error::{ApiError, WebError};
 use super::forms;
-use super::invited::{Guest, another, say};
+use super::invited::{Guest, say};
 use super::leases::Turn;
 use super::people::invited;
 use super::{AppState, FORM_LIMIT};
@@ -121,7 +121,8 @@ async fn set_terms(State(app): State<AppState>, Path(id): Path<String>, body: Bo
 async fn turn(app: &AppState, guest: Guest) -> Answer {
     let leases = app.teaching.leases();
     let (deciding, viewing) = (Arc::clone(leases), Arc::clone(leases));
-    let decide = move |session: &Session| Ok(another(session, &deciding, guest));
+    let admit = move |session: &Session| guest.admit(session);
+    let wants = move |session: &Session| guest.wants(session, &deciding);
     let view = move |session: &Session, position: &Position| {
         let turn = viewing.turn(guest.session, session, guest.person);
         match turn {
@@ -135,7 +136,8 @@ async fn turn(app: &AppState, guest: Guest) -> Answer {
             None => json!({"kind": "waiting"}),
         }
     };
-    let mut value = app.teaching.act(guest.session, decide, view).await?;
+    let put = (app.teaching).put_another(guest.session, admit, wants, view);
+    let mut value = put.await?;
     // What is left, and what answers would rule out, is the owner's to know.
     if let Value::Object(question) = &mut value {
         for key in ["left", "removed", "hurried"] {
@@ -186,6 +188,10 @@ async fn said(
     guest: Guest,
     decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
 ) -> Answer {
+    let decide = move |session: &Session| {
+        guest.admit(session)?;
+        decide(session)
+    };
     app.teaching.act(guest.session, decide, |_, _| ()).await?;
     app.teaching.leases().release(guest.session, guest.person);
     turn(app, guest).await

@@ -74,6 +74,8 @@ pub struct Opinion {
 #[derive(Clone, Debug, PartialEq)]
 struct Repeat {
     person: u32,
+    number: u32,
+    reply: Reply<Atom>,
     /// Whether it was the same answer.
     same: bool,
 }
@@ -138,6 +140,13 @@ impl Panel {
     /// What was said to a question, in the order in which it was.
     pub fn opinions(&self, number: u32) -> &[Opinion] {
         self.opinions.get(&number).map_or(&[], Vec::as_slice)
+    }
+
+    /// What this person last said to a question that was put to them once more.
+    pub(super) fn repeated(&self, person: u32, number: u32) -> Option<&Reply<Atom>> {
+        let mut repeats = self.repeats.iter().rev();
+        let repeat = repeats.find(|one| one.person == person && one.number == number);
+        repeat.map(|repeat| &repeat.reply)
     }
 
     /// The questions that anybody answered.
@@ -342,7 +351,12 @@ impl Panel {
         let said = self.said(person, number);
         let said = said.ok_or_else(|| format!("person {person} has not answered {number} yet"))?;
         let same = said.reply == *reply;
-        self.repeats.push(Repeat { person, same });
+        self.repeats.push(Repeat {
+            person,
+            number,
+            reply: reply.clone(),
+            same,
+        });
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::decide::{Decision, Refusal};
 use super::event::{Event, ReplyText};
 use super::panel::{MAX_ANSWERS, MAX_NAME, MAX_PEOPLE, Panel, Person, Terms, is_for_people};
 use super::{Position, Session};
-use crate::evidence::AnswerId;
+use crate::evidence::{AnswerId, Stop};
 use crate::learner::{Question, Reply};
 use crate::task::{Atom, is_disruptive};
 
@@ -48,10 +48,16 @@ impl Session {
         }
     }
 
+    /// [`Self::further_until`] there is something, or it is known that there is nothing.
+    pub fn further(&self) -> Option<Event> {
+        self.further_until(&Stop::default())
+    }
+
     /// A question beside those that are open, or a contradiction that was not seen
     /// while several answered: the entry to append. None where what comes next
-    /// depends on the open questions. Takes as long as [`Self::think`].
-    pub fn further(&self) -> Option<Event> {
+    /// depends on the open questions, or `stop` is set before it is known. Takes as long
+    /// as [`Self::think`].
+    pub fn further_until(&self, stop: &Stop) -> Option<Event> {
         if !self.panel.is_shared() || !matches!(self.position(), Position::Asking(_)) {
             return None;
         }
@@ -66,7 +72,7 @@ impl Session {
             skipped.ok()?;
         }
         beside.position = Position::Thinking;
-        let event = beside.think()?;
+        let event = beside.think_until(stop)?;
         let is_another = match &event {
             Event::Asked { question, .. } => {
                 let question = question.read(self.universe()).ok()?;
@@ -151,6 +157,10 @@ impl Session {
         if said.is_some_and(|opinion| opinion.reply == *reply)
             && self.panel.due(person) != Some(number)
         {
+            return Ok(Decision::Already(self.position().clone()));
+        }
+        if self.panel.repeated(person, number) == Some(reply) {
+            // Sent once more.
             return Ok(Decision::Already(self.position().clone()));
         }
         if !self.is_open(number) {

@@ -268,7 +268,10 @@ struct Partial {
 
 impl Partial {
     fn beside(to: &Path) -> Result<Self, StoreError> {
-        let path = with_suffix(to, &format!(".partial-{}", std::process::id()));
+        // Not by the process: in a container all have the same number, and one that was
+        // killed leaves its file behind.
+        let number = getrandom::u64().map_err(|error| fault(to, error.to_string()))?;
+        let path = with_suffix(to, &format!(".partial-{number:016x}"));
         let new = OpenOptions::new().write(true).create_new(true).open(&path);
         match new {
             Ok(_) => Ok(Self { path }),

@@ -77,7 +77,7 @@ pub struct Listed {
 pub enum StoreError {
     /// Another writer has appended an entry of this number: read it and decide
     /// again.
-    #[error("entry {seq} of session {session} is already there")]
+    #[error("entry {seq} of session {session:?} is already there")]
     Taken {
         /// The session.
         session: SessionId,
@@ -85,7 +85,7 @@ pub enum StoreError {
         seq: u64,
     },
     /// The entry would leave a gap.
-    #[error("session {session} has no entry before {seq}")]
+    #[error("session {session:?} has no entry before {seq}")]
     Gap {
         /// The session.
         session: SessionId,

@@ -17,6 +17,9 @@ pub(crate) enum Fault {
     Slow,
     /// Nothing is kept before the fault is another.
     Stuck,
+    /// What comes next is kept, and nobody is told: asked once more, as when a connection
+    /// broke, the store finds that it is there.
+    Unsure,
     /// The log of this session breaks whoever reads it.
     Panics(SessionId),
 }
@@ -54,8 +57,18 @@ impl Store for Unreliable {
         let fault = self.fault.lock().unwrap();
         // A test that fails meanwhile is to end.
         let most = Duration::from_secs(30);
-        drop(self.changed.wait_timeout_while(fault, most, waits).unwrap());
-        self.store.append_all(session, seq, bodies)
+        let (mut fault, _) = self.changed.wait_timeout_while(fault, most, waits).unwrap();
+        let is_unsure = *fault == Fault::Unsure;
+        if is_unsure {
+            *fault = Fault::None;
+        }
+        drop(fault);
+        self.store.append_all(session, seq, bodies)?;
+        if is_unsure {
+            let session = *session;
+            return Err(StoreError::Taken { session, seq });
+        }
+        Ok(())
     }
 
     fn read(&self, session: &SessionId) -> Result<Vec<Entry>, StoreError> {

@@ -161,15 +161,23 @@ async fn visitor(app: &AppState, key: VisitKey, look: Look) -> Result<Option<Vis
         };
         let idle = now.saturating_sub(visit.seen);
         if idle >= length.idle || now.saturating_sub(visit.begun) >= length.whole {
-            visits.end_visit(&digest)?;
+            // What cannot be noted on a full disk is not to keep anybody from looking.
+            noted(visits.end_visit(&digest));
             return Ok(None);
         }
         if look == Look::Asked && idle >= SEEN_EVERY {
-            visits.see_visit(&digest, now)?;
+            noted(visits.see_visit(&digest, now));
         }
         Ok(Some(visit.visitor))
     })
     .await
+}
+
+/// Tells the log if something about a visit could not be noted.
+fn noted(result: Result<(), StoreError>) {
+    if let Err(cause) = result {
+        tracing::warn!(%cause, "a visit could not be noted");
+    }
 }
 
 /// The key that a request shows as the owner's: a browser's cookie, or a script's
@@ -264,6 +272,11 @@ pub(crate) async fn admit(State(app): State<AppState>, request: Request, next: N
         May::Anyone | May::Key | May::Invited => Ok(()),
         may => comes_in(&app, headers, &path, may, Look::Asked).await,
     };
+    let admitted = admitted.map_err(|error| match error {
+        // Nothing of what came was looked at.
+        WebError::Slow | WebError::Waiting if request.method() != Method::GET => WebError::Unheard,
+        error => error,
+    });
     let budgets = &app.door.budgets;
     match admitted.and_then(|()| budgets.spend(budgets.whence(&request), route.cost)) {
         Ok(()) => next.run(request).await,

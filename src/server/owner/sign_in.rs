@@ -106,6 +106,7 @@ async fn enter(
 ) -> Result<(VisitKey, Option<HeaderValue>), WebError> {
     let kept = super::ask(app, |store| store.visits().password()).await?;
     let kept = kept.ok_or(WebError::NoPassword)?;
+    let hash = kept.clone();
     let turn = app
         .door
         .checks
@@ -121,7 +122,21 @@ async fn enter(
     }
     tracing::info!(from = %from.address, "the owner signed in");
     app.door.budgets.welcome(from);
-    begin(app, headers, None, None).await
+    let begun = begin(app, headers, None, None).await?;
+    // Another password ends all visits, also one that began while it was set.
+    let digest = begun.0.digest();
+    let ended = super::ask(app, move |store| {
+        let visits = store.visits();
+        let is_old = visits.password()?.as_ref() != Some(&hash);
+        if is_old {
+            visits.end_visit(&digest)?;
+        }
+        Ok(is_old)
+    });
+    if ended.await? {
+        return Err(WebError::WrongPassword);
+    }
+    Ok(begun)
 }
 
 async fn sign_in(State(app): State<AppState>, request: Request) -> Result<Response, PageError> {

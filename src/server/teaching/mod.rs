@@ -123,11 +123,11 @@ impl Teaching {
             };
             let first = Session::created(task, setup);
             let body = serde_json::to_string(&first).map_err(WebError::internal)?;
-            match upload {
+            let kept = match upload {
                 Some(upload) => store.begin(&id, &body, &upload, None),
                 None => store.append(&id, 0, &body),
-            }
-            .map_err(WebError::internal)
+            };
+            archive.begun(&id, &body, kept)
         })
         .await?;
         self.wake(id).await
@@ -150,7 +150,7 @@ impl Teaching {
             let body = serde_json::to_string(&first).map_err(WebError::internal)?;
             let mut files = upload.files.contents();
             let kept = (archive.store).begin(&id, &body, &upload.id, Some(&mut files));
-            kept.map_err(WebError::internal)?;
+            archive.begun(&id, &body, kept)?;
             archive.pools.keep(upload.id, &task, world);
             Ok(())
         })
@@ -173,6 +173,10 @@ impl Teaching {
         id: SessionId,
         name: String,
     ) -> Result<Option<StoredFile>, WebError> {
+        // No file is called so, and PostgreSQL would not even look.
+        if name.contains('\0') {
+            return Ok(None);
+        }
         let archive = Arc::clone(&self.archive);
         self.on_pool(move || {
             let store = &archive.store;
@@ -229,7 +233,7 @@ impl Teaching {
         view: impl FnOnce(&Session) -> T + Send + 'static,
     ) -> Result<T, WebError> {
         let nothing = |_: &Session| Ok(Decision::Already(Position::Thinking));
-        self.take_turn(id, nothing, |session, _| view(session), None)
+        self.take_turn(id, nothing, |session, _| view(session), None, None)
             .await
     }
 

@@ -25,8 +25,21 @@ type Held = OwnedMutexGuard<Option<Session>>;
 /// What thinking needs: a permit, given back once only the disk is waited for, and
 /// somebody to say when to end.
 struct Licence {
+    wanted: Wanted,
     permit: Option<OwnedSemaphorePermit>,
     stop: Stop,
+    desk: Arc<Desk>,
+}
+
+/// Whether a question is wanted beside those that are open.
+type Beside = Box<dyn Fn(&Session) -> bool + Send>;
+
+/// What a session is to think about.
+enum Wanted {
+    /// The next question.
+    Next,
+    /// A question beside those that are open.
+    Another,
 }
 
 /// Somebody waits, until this goes.
@@ -55,7 +68,24 @@ impl Teaching {
         view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
     ) -> Result<T, WebError> {
         let sent = self.desks.of(id).sent();
-        self.take_turn(id, decide, view, Some(sent)).await
+        self.take_turn(id, decide, view, Some(sent), None).await
+    }
+
+    /// Shows the session to somebody whom `admit` lets in, after it has put a question
+    /// beside those that are open, where it `wants` one and has one.
+    pub(crate) async fn put_another<T: Send + 'static>(
+        &self,
+        id: SessionId,
+        admit: impl Fn(&Session) -> Result<(), WebError> + Send + 'static,
+        wants: impl Fn(&Session) -> bool + Send + 'static,
+        view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
+    ) -> Result<T, WebError> {
+        let decide = move |session: &Session| {
+            admit(session)?;
+            Ok(Decision::Already(Position::Thinking))
+        };
+        self.take_turn(id, decide, view, None, Some(Box::new(wants)))
+            .await
     }
 
     /// The same; what was `sent`, if anything, is settled once it is decided on.
@@ -65,6 +95,7 @@ impl Teaching {
         decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
         view: impl FnOnce(&Session, &Position) -> T + Send + 'static,
         sent: Option<Unsettled>,
+        beside: Option<Beside>,
     ) -> Result<T, WebError> {
         let desk = self.desks.of(id);
         let _waiting = desk.wait(self.grace);
@@ -74,7 +105,7 @@ impl Teaching {
         let view = move |session: &Session, position: &Position| {
             (!is_gone.load(Ordering::Acquire)).then(|| view(session, position))
         };
-        let turn = (self.clone()).turn(id, Arc::clone(&desk), decide, view, sent);
+        let turn = (self.clone()).turn(id, Arc::clone(&desk), decide, view, sent, beside);
         tokio::spawn(async move {
             if let Some(result) = turn.await.transpose()
                 && let Err(Err(unheard)) = tell.send(result)
@@ -97,6 +128,7 @@ impl Teaching {
         decide: impl Fn(&Session) -> Result<Decision, WebError> + Send + 'static,
         view: impl FnOnce(&Session, &Position) -> Option<T> + Send + 'static,
         sent: Option<Unsettled>,
+        beside: Option<Beside>,
     ) -> Result<Option<T>, WebError> {
         let wait = self.archive.metrics.wait();
         let mut held = desk.session().lock_owned().await;
@@ -115,18 +147,37 @@ impl Teaching {
         let (held, already, clock) = settled.await?;
         drop(sent);
 
-        let thinks = |session: &Session| *session.position() == Position::Thinking;
-        let licence = if held.as_ref().is_some_and(thinks) {
+        // A look that was waited for in vain: whoever looks next has it all.
+        let is_idle = |desk: &Desk| already.is_some() && desk.is_forsaken(self.grace);
+        if is_idle(&desk) {
+            return Ok(None);
+        }
+        let wanted = held.as_ref().and_then(|session| match &beside {
+            _ if *session.position() == Position::Thinking => Some(Wanted::Next),
+            Some(wants) if desk.may_have_more(session.entries()) && wants(session) => {
+                Some(Wanted::Another)
+            }
+            _ => None,
+        });
+        let licence = if let Some(wanted) = wanted {
             let wait = self.archive.metrics.wait();
             let permit = permit(&self.permits).await?;
+            if is_idle(&desk) {
+                return Ok(None);
+            }
             let stop = desk.begin();
             if self.over.is_set() {
                 stop.set();
             }
             // Whoever waited may have gone by now.
-            drop(desk.wait(self.grace));
-            let permit = Some(permit);
-            Some((Licence { permit, stop }, wait.over()))
+            desk.end_unless_waited_for(self.grace);
+            let licence = Licence {
+                wanted,
+                permit: Some(permit),
+                stop,
+                desk,
+            };
+            Some((licence, wait.over()))
         } else {
             None
         };
@@ -164,9 +215,7 @@ impl Teaching {
                     None => archive.append(id, &mut session, &event)?,
                 },
                 Err(error) => {
-                    if error.is_refusal() {
-                        *held = Some(session);
-                    }
+                    *held = Some(session);
                     return Err(error);
                 }
             };
@@ -192,7 +241,10 @@ impl Teaching {
         };
         let mut is_new = already.is_none();
         if let Some((licence, _turn)) = licence {
-            let thought = clock.run(|| self.think(&id, &mut session, licence));
+            let thought = clock.run(|| match licence.wanted {
+                Wanted::Next => self.think(&id, &mut session, licence),
+                Wanted::Another => self.think_beside(&id, &mut session, licence),
+            });
             self.busy.note(clock.wall());
             is_new |= thought?;
         }
@@ -229,6 +281,24 @@ impl Teaching {
             return Err(WebError::Slow);
         }
         Ok(thought)
+    }
+
+    /// Puts a question beside those that are open; whether there was one.
+    fn think_beside(
+        &self,
+        id: &SessionId,
+        session: &mut Session,
+        mut licence: Licence,
+    ) -> Result<bool, WebError> {
+        let Some(event) = session.further_until(&licence.stop) else {
+            if !licence.stop.is_set() {
+                (licence.desk).found_nothing_beside(session.entries());
+            }
+            return Ok(false);
+        };
+        drop(licence.permit.take());
+        self.archive.append(id, session, &event)?;
+        Ok(true)
     }
 }
 

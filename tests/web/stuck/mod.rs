@@ -9,6 +9,7 @@ use std::sync::Arc;
 use axum::http::StatusCode;
 use serde_json::json;
 
+use crate::door::invite;
 use crate::site::Site;
 use crate::unreliable::{Fault, Unreliable};
 
@@ -76,6 +77,67 @@ async fn what_is_not_kept_yet_is_not_said_to_be() {
     assert_ne!(next["number"].to_string(), question);
     let log = site.get(&format!("/api/v1{page}/log")).await.text;
     assert_eq!(log.matches("\"event\":\"answered\"").count(), 1);
+}
+
+/// An invited person sends an answer while the session is busy with another's.
+#[tokio::test(flavor = "multi_thread")]
+async fn what_an_invited_person_sends_is_taken_while_the_session_is_busy() {
+    let store = Arc::new(Unreliable::in_memory());
+    let site = Site::over_any(store.clone());
+    let session = format!("/api/v1/sessions/{}", begin(&site).await);
+    let mut people = Vec::new();
+    for name in ["Ada", "Bea"] {
+        let link = invite(&site, &session, name).await;
+        let browser = site.elsewhere();
+        let home = browser.enter(&link).await;
+        let question = browser.get(&home).await.main("data-question");
+        people.push((browser, home, question));
+    }
+    assert_ne!(people[0].2, people[1].2, "each has a question of their own");
+
+    store.fail(Fault::Stuck);
+    for (browser, home, question) in &people {
+        let answer = [("question", question.as_str()), ("answer", "equal")];
+        let sent = browser.form(&format!("{home}/answers"), &answer).await;
+        assert_eq!(sent.location(), *home);
+        let waiting = browser.get(home).await;
+        assert_eq!(waiting.status, StatusCode::ACCEPTED);
+        assert!(waiting.text.contains("waits for its turn"));
+    }
+    store.fail(Fault::None);
+    for (browser, home, question) in &people {
+        let next = browser.get(home).await;
+        assert_eq!(next.status, StatusCode::OK);
+        assert_ne!(next.main("data-question"), *question);
+    }
+    let log = site.get(&format!("{session}/log")).await.text;
+    assert_eq!(log.matches("\"event\":\"said\"").count(), 2, "{log}");
+}
+
+/// A store that kept what it could not say that it kept: what was asked happens once.
+#[tokio::test]
+async fn what_was_kept_without_a_word_happens_once() {
+    let store = Arc::new(Unreliable::in_memory());
+    let site = Site::over_any(store.clone());
+    store.fail(Fault::Unsure);
+    let session = format!("/api/v1/sessions/{}", begin(&site).await);
+    for _ in 0..3 {
+        let question = site.get(&format!("{session}/question")).await.json();
+        let answer = json!({"question": question["number"], "answer": "equal"});
+        store.fail(Fault::Unsure);
+        let reply = site.post(&format!("{session}/answers"), answer).await;
+        assert_eq!(reply.status, StatusCode::OK, "{}", reply.text);
+    }
+    store.fail(Fault::Unsure);
+    let undone = site.post(&format!("{session}/undo"), json!({})).await;
+    assert_eq!(undone.status, StatusCode::OK, "{}", undone.text);
+    store.fail(Fault::Unsure);
+    invite(&site, &session, "Ada").await;
+    let log = site.get(&format!("{session}/log")).await.text;
+    for (event, times) in [("answered", 3), ("retracted", 1), ("invited", 1)] {
+        let event = format!("\"event\":\"{event}\"");
+        assert_eq!(log.matches(&event).count(), times, "{log}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]
