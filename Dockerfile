@@ -18,12 +18,11 @@ COPY --from=build /memrep/target/release/memrep /usr/local/bin/memrep
 USER 10001:10001
 WORKDIR /data
 VOLUME /data
-# Fewer arenas leave fewer pieces of memory behind. The log is for machines. In a container's own network namespace the address below
+# The log is for machines. In a container's own network namespace the address below
 # is reached by what shares the namespace: a proxy beside it, as the document says.
 ENV MEMREP_ADDR=127.0.0.1:8080 \
     MEMREP_DATABASE=/data/memrep.db \
-    MEMREP_LOG_FORMAT=json \
-    MALLOC_ARENA_MAX=2
+    MEMREP_LOG_FORMAT=json
 STOPSIGNAL SIGTERM
 ENTRYPOINT ["memrep"]
 CMD ["serve"]

@@ -55,8 +55,6 @@ impl House {
                 "warn",
             ])
             .current_dir(folder)
-            // As the unit file and the container have it.
-            .env("MALLOC_ARENA_MAX", "2")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .spawn()?;
