@@ -7,22 +7,61 @@
 //! urn), so that every concept explains all answers with the teacher that it
 //! makes most plausible. Knows neither automata nor learners.
 
+use std::fmt;
+
 use crate::evidence::Fact;
 
-/// How an atom ends in a concept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct End {
-    /// Whether the concept contains the atom.
-    pub inside: bool,
-    /// A number for the place in which it ends (for automata: the state), none
-    /// where nothing finer is known than inside and outside. Atoms of one place
-    /// have one label.
-    pub place: Option<u32>,
-    /// Of an atom outside, how long it did well: more is longer. Teachers often
-    /// prefer the failure that came later. Of an atom inside, how much room it
-    /// leaves: more is more ways to go on well. Teachers often prefer it to one
+/// How an atom ends in a concept, in the eight bytes that let millions of them be
+/// compared for a question.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct End(u64);
+
+/// Below the bit for what is inside, the merit; below that the place.
+const PLACE_BITS: u32 = 31;
+const NO_PLACE: u64 = 0;
+
+impl End {
+    /// `place` is a number for the place in which the atom ends, below 2³¹ − 1 (for
+    /// automata: the state), none where nothing finer is known than inside and
+    /// outside. Atoms of one place have one label.
+    ///
+    /// `merit` is, of an atom outside, how long it did well: more is longer. Teachers
+    /// often prefer the failure that came later. Of an atom inside it is how much room
+    /// it leaves: more is more ways to go on well. Teachers often prefer it to one
     /// after which little is allowed.
-    pub merit: u32,
+    #[inline]
+    pub fn new(inside: bool, place: Option<u32>, merit: u32) -> Self {
+        let place = place.map_or(NO_PLACE, |place| u64::from(place) + 1);
+        debug_assert!(place >> PLACE_BITS == 0, "places are few");
+        Self(u64::from(inside) << 63 | u64::from(merit) << PLACE_BITS | place)
+    }
+
+    /// Whether the concept contains the atom.
+    #[inline]
+    pub fn is_inside(self) -> bool {
+        self.0 >> 63 == 1
+    }
+
+    /// How well it did, as [`Self::new`] was told.
+    #[inline]
+    pub fn merit(self) -> u32 {
+        (self.0 >> PLACE_BITS) as u32
+    }
+
+    fn place(self) -> u64 {
+        self.0 & ((1 << PLACE_BITS) - 1)
+    }
+}
+
+impl fmt::Debug for End {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = self.place().checked_sub(1);
+        (formatter.debug_struct("End"))
+            .field("inside", &self.is_inside())
+            .field("place", &place)
+            .field("merit", &self.merit())
+            .finish()
+    }
 }
 
 /// How two atoms end, as a concept has it.
@@ -66,10 +105,12 @@ impl Ending {
     #[inline]
     pub fn of(first: End, second: End) -> Self {
         // No branches: nobody can guess them, and all that is believed asks this.
-        let order =
-            usize::from(first.merit > second.merit) | usize::from(first.merit < second.merit) << 1;
-        let same = usize::from(first.place.is_some()) & usize::from(first.place == second.place);
-        ENDINGS[usize::from(first.inside)][usize::from(second.inside)][order][same]
+        let order = usize::from(first.merit() > second.merit())
+            | usize::from(first.merit() < second.merit()) << 1;
+        let same =
+            usize::from(first.place() != NO_PLACE) & usize::from(first.place() == second.place());
+        let inside = usize::from(first.is_inside()) << 1 | usize::from(second.is_inside());
+        ENDINGS[inside << 3 | order << 1 | same]
     }
 
     /// Of two atoms in the concept or not, of which the first has more merit, or the
@@ -89,18 +130,17 @@ impl Ending {
     }
 }
 
-/// By whether the first is in the concept, whether the second is, which has more merit
-/// (a bit for each), and whether they end in the same place.
-const ENDINGS: [[[[Ending; 2]; 4]; 2]; 2] = {
-    let mut endings = [[[[Ending::SamePlace; 2]; 4]; 2]; 2];
+/// By the bits of whether the first is in the concept, whether the second is, whether
+/// the second has more merit, whether the first has, and whether they end in the same
+/// place.
+const ENDINGS: [Ending; 32] = {
+    let mut endings = [Ending::SamePlace; 32];
     let mut number = 0;
     while number < 32 {
-        let [first, second, same] = [number >> 4, number >> 3 & 1, number & 1];
-        let order = number >> 1 & 3;
-        endings[first][second][order][same] = Ending::told(
-            [first == 1, second == 1],
-            [order & 1 == 1, order & 2 == 2],
-            same == 1,
+        endings[number] = Ending::told(
+            [number >> 4 == 1, number >> 3 & 1 == 1],
+            [number >> 1 & 1 == 1, number >> 2 & 1 == 1],
+            number & 1 == 1,
         );
         number += 1;
     }
@@ -125,6 +165,11 @@ pub enum Verdict {
     Equal,
     /// They cannot be compared.
     Incomparable,
+}
+
+impl Verdict {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 3] = [Self::Worse, Self::Equal, Self::Incomparable];
 }
 
 /// The places of [`Tally::counts`]: for atoms with different labels agreeing
@@ -152,71 +197,120 @@ const ERRORS: [f64; 2] = [0.5, 9.5];
 /// impossible, so that a search may pass through what it refutes.
 const REFUTED: f64 = -9.0;
 
+/// Where a tally counts unsure answers that are wrong and that are right, what is
+/// certain and not true, and what nobody asks for.
+const WRONG: usize = CELLS;
+const RIGHT: usize = CELLS + 1;
+const UNTRUE: usize = CELLS + 2;
+const IDLE: usize = CELLS + 3;
+
 /// The answers of one teacher, as a concept sees them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
-    counts: [u16; CELLS],
-    /// Unsure answers that are wrong, and right.
-    errors: [u16; 2],
-    /// What is certain and not true.
-    refuted: u16,
+    /// By cell, and then the others.
+    counts: [u16; IDLE + 1],
 }
+
+/// Where an answer counts: its cell, and what it says of the concept by whether it is
+/// unsure or sure.
+#[derive(Clone, Copy)]
+struct Places {
+    cell: u8,
+    said: [u8; 2],
+}
+
+impl Places {
+    /// Of an answer to a comparison of atoms that end like this.
+    const fn of(ending: Ending, verdict: Verdict) -> Self {
+        let (cell, right) = match (ending, verdict) {
+            (Ending::SecondOnly, Verdict::Worse) => (0, Some(true)),
+            (Ending::FirstOnly, Verdict::Worse)
+            | (Ending::FirstOnly | Ending::SecondOnly, Verdict::Equal) => (IDLE, Some(false)),
+            (Ending::FirstOnly | Ending::SecondOnly, Verdict::Incomparable) => (1, None),
+            (Ending::SamePlace, Verdict::Worse) => (2, None),
+            (Ending::SamePlace, Verdict::Equal) => (3, None),
+            (Ending::SamePlace, Verdict::Incomparable) => (4, None),
+            (Ending::Inside, Verdict::Worse) => (5, None),
+            (Ending::Inside, Verdict::Equal) => (6, None),
+            (Ending::Inside, Verdict::Incomparable) => (7, None),
+            (Ending::Outside, Verdict::Worse) => (8, None),
+            (Ending::Outside, Verdict::Equal) => (9, None),
+            (Ending::Outside, Verdict::Incomparable) => (10, None),
+            (Ending::SecondFurther, Verdict::Worse) => (11, None),
+            (Ending::FirstFurther, Verdict::Worse) => (12, None),
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => (13, None),
+            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => (14, None),
+            (Ending::SecondFreer, Verdict::Worse) => (15, None),
+            (Ending::FirstFreer, Verdict::Worse) => (16, None),
+            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Equal) => (17, None),
+            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Incomparable) => (18, None),
+        };
+        Self {
+            cell: cell as u8,
+            said: match right {
+                Some(right) => said(right),
+                None => [IDLE as u8; 2],
+            },
+        }
+    }
+}
+
+/// Where something counts that is right of a concept or not, by whether it is unsure
+/// or sure.
+const fn said(right: bool) -> [u8; 2] {
+    if right {
+        [RIGHT as u8, IDLE as u8]
+    } else {
+        [WRONG as u8, UNTRUE as u8]
+    }
+}
+
+/// By ending and verdict.
+const PLACES: [[Places; Verdict::ALL.len()]; Ending::ALL.len()] = {
+    let mut places =
+        [[Places::of(Ending::Inside, Verdict::Equal); Verdict::ALL.len()]; Ending::ALL.len()];
+    let mut ending = 0;
+    while ending < Ending::ALL.len() {
+        let mut verdict = 0;
+        while verdict < Verdict::ALL.len() {
+            places[ending][verdict] = Places::of(Ending::ALL[ending], Verdict::ALL[verdict]);
+            verdict += 1;
+        }
+        ending += 1;
+    }
+    places
+};
 
 impl Tally {
     /// Takes note of a label that agrees with the concept or not.
+    #[inline]
     pub fn label(&mut self, agrees: bool, sure: bool) {
-        self.certain(agrees, sure);
+        self.count(said(agrees)[usize::from(sure)]);
     }
 
     /// Takes note of the answer to a comparison of atoms that end like this.
     #[inline]
     pub fn comparison(&mut self, ending: Ending, verdict: Verdict, sure: bool) {
-        let cell = match (ending, verdict) {
-            (Ending::SamePlace, Verdict::Worse) => 2,
-            (Ending::SamePlace, Verdict::Equal) => 3,
-            (Ending::SamePlace, Verdict::Incomparable) => 4,
-            (Ending::Inside, Verdict::Worse) => 5,
-            (Ending::Inside, Verdict::Equal) => 6,
-            (Ending::Inside, Verdict::Incomparable) => 7,
-            (Ending::Outside, Verdict::Worse) => 8,
-            (Ending::Outside, Verdict::Equal) => 9,
-            (Ending::Outside, Verdict::Incomparable) => 10,
-            (Ending::SecondFurther, Verdict::Worse) => 11,
-            (Ending::FirstFurther, Verdict::Worse) => 12,
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => 13,
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => 14,
-            (Ending::SecondFreer, Verdict::Worse) => 15,
-            (Ending::FirstFreer, Verdict::Worse) => 16,
-            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Equal) => 17,
-            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Incomparable) => 18,
-            (_, Verdict::Incomparable) => 1,
-            (Ending::SecondOnly, Verdict::Worse) => {
-                self.certain(true, sure);
-                0
-            }
-            (Ending::FirstOnly, Verdict::Worse) | (_, Verdict::Equal) => {
-                return self.certain(false, sure);
-            }
-        };
-        self.counts[cell] += 1;
+        // No branches, as with endings.
+        let places = &PLACES[ending as usize][verdict as usize];
+        self.count(places.cell);
+        self.count(places.said[usize::from(sure)]);
     }
 
-    fn certain(&mut self, right: bool, sure: bool) {
-        if sure {
-            self.refuted += u16::from(!right);
-        } else {
-            self.errors[usize::from(right)] += 1;
-        }
+    fn count(&mut self, place: u8) {
+        let count = &mut self.counts[usize::from(place)];
+        *count = count.wrapping_add(1);
     }
 
     /// Whether something certain is not true of the concept.
     pub fn is_refuted(&self) -> bool {
-        self.refuted > 0
+        self.counts[UNTRUE] > 0
     }
 
     /// The expected share of unsure answers that are wrong.
     pub fn error_rate(&self) -> f64 {
-        let [wrong, right] = [0, 1].map(|kind| f64::from(self.errors[kind]) + ERRORS[kind]);
+        let wrong = f64::from(self.counts[WRONG]) + ERRORS[0];
+        let right = f64::from(self.counts[RIGHT]) + ERRORS[1];
         wrong / (wrong + right)
     }
 
@@ -310,7 +404,7 @@ impl Belief {
     ///
     /// If there are more than [`Self::new`] was told.
     pub fn log_chance(&self, tally: &Tally) -> f64 {
-        let mut sum = f64::from(tally.refuted) * REFUTED;
+        let mut sum = f64::from(tally.counts[UNTRUE]) * REFUTED;
         for (urn, cells) in URNS.iter().enumerate() {
             let mut all = 0;
             for cell in cells.clone() {
@@ -320,7 +414,7 @@ impl Belief {
             }
             sum -= self.urns[all][urn];
         }
-        let [wrong, right] = tally.errors.map(usize::from);
+        let [wrong, right] = [WRONG, RIGHT].map(|place| usize::from(tally.counts[place]));
         sum + self.errors[wrong][0] + self.errors[right][1] - self.answers[wrong + right]
     }
 }

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{ConceptClass, End, Failure, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
-use crate::identify::{self, Identifier, Settings};
+use crate::identify::{self, Ends, Identifier, Settings};
 
 /// Words up to this length are drawn to check even the smallest hypothesis.
 const LONGEST: usize = 10;
@@ -82,6 +82,12 @@ impl ConceptClass for DfaClass {
 
     fn end(&self, concept: &Dfa, atom: &Word) -> End {
         identify::end(concept, atom)
+    }
+
+    fn ends(&self, concepts: &[&Dfa], atoms: &[Word]) -> Vec<Vec<End>> {
+        let ends: Vec<Ends<'_>> = concepts.iter().copied().map(Ends::new).collect();
+        let of = |atom| ends.iter().map(|ends| ends.of(atom)).collect();
+        atoms.iter().map(of).collect()
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::blame::blame;
-use super::{ConceptClass, Contradiction, Failure, Sample, Spread, Weighted, Wish, tally};
+use super::{ConceptClass, Contradiction, Failure, Sample, Spread, Weighted, Wish, tallies};
 use crate::belief::Belief;
 use crate::evidence::{AnswerId, Budget, Fact};
 
@@ -201,23 +201,24 @@ impl ConceptClass for FiniteClass {
         for column in &self.columns {
             *of_size.entry(column.size).or_default() += 1;
         }
-        let consistent = self.concepts().filter(|&concept| {
+        let is_consistent = |&concept: &FiniteConcept| {
             let facts = self.facts.iter().map(|(_, fact)| fact);
             within.contains(&self.size(concept)) && self.is_consistent(concept, facts)
-        });
+        };
+        let consistent: Vec<FiniteConcept> = self.concepts().filter(is_consistent).collect();
+        let tallies = tallies(self, &Vec::from_iter(&consistent), wish.heard);
         let belief = Belief::new(wish.heard.iter().map(Vec::len).sum());
-        let weighted = |concept| {
+        let weighted = |(concept, tally)| {
             let size = self.size(concept);
             let rank = (size - least) as f64;
             let prior = rank * wish.decay.ln() - (of_size[&size] as f64).ln();
-            let tally = tally(self, &concept, wish.heard);
             Weighted {
                 concept,
-                log_weight: prior + belief.log_chance(&tally),
+                log_weight: prior + belief.log_chance(tally),
             }
         };
         Ok(Spread {
-            concepts: consistent.map(weighted).collect(),
+            concepts: consistent.into_iter().zip(&tallies).map(weighted).collect(),
             exact: true,
             hurried: false,
         })

@@ -95,11 +95,19 @@ pub trait ConceptClass {
     /// How an atom ends in the concept. Unless a class knows more, inside or
     /// outside.
     fn end(&self, concept: &Self::Concept, atom: &Self::Atom) -> End {
-        End {
-            inside: self.contains(concept, atom),
-            place: None,
-            merit: 0,
-        }
+        End::new(self.contains(concept, atom), None, 0)
+    }
+
+    /// How each of some atoms ends in each of some concepts, by atom and then by
+    /// concept: the same as [`Self::end`], for many at once.
+    fn ends(&self, concepts: &[&Self::Concept], atoms: &[Self::Atom]) -> Vec<Vec<End>> {
+        let of = |atom| {
+            concepts
+                .iter()
+                .map(|concept| self.end(concept, atom))
+                .collect()
+        };
+        atoms.iter().map(of).collect()
     }
 
     /// Up to `count` of the simplest atoms that `inside` contains and `outside`
@@ -152,21 +160,35 @@ pub trait ConceptClass {
     }
 }
 
-/// What was heard, as a concept sees it.
-pub fn tally<C: ConceptClass + ?Sized>(
+/// What was heard, as each of some concepts sees it.
+pub fn tallies<C: ConceptClass + ?Sized>(
     class: &C,
-    concept: &C::Concept,
+    concepts: &[&C::Concept],
     heard: &[Vec<Heard<C::Atom>>],
-) -> Tally {
-    let mut tally = Tally::default();
-    for Heard { fact, sure } in heard.iter().flatten() {
-        if let Fact::Label { atom, accepted } = fact {
-            tally.label(class.contains(concept, atom) == *accepted, *sure);
+) -> Vec<Tally> {
+    let facts = || heard.iter().flatten();
+    let atoms: Vec<C::Atom> = (facts())
+        .flat_map(|Heard { fact, .. }| match (fact, compared(fact)) {
+            (Fact::Label { atom, .. }, _) => vec![atom.clone()],
+            (_, Some((first, second, _))) => vec![first.clone(), second.clone()],
+            (_, None) => Vec::new(),
+        })
+        .collect();
+    let ends = class.ends(concepts, &atoms);
+    let mut tallies = vec![Tally::default(); concepts.len()];
+    let mut ends = ends.iter();
+    for Heard { fact, sure } in facts() {
+        if let Fact::Label { accepted, .. } = fact {
+            for (tally, end) in tallies.iter_mut().zip(ends.next().into_iter().flatten()) {
+                tally.label(end.is_inside() == *accepted, *sure);
+            }
         }
-        if let Some((first, second, verdict)) = compared(fact) {
-            let ending = Ending::of(class.end(concept, first), class.end(concept, second));
-            tally.comparison(ending, verdict, *sure);
+        if let Some((.., verdict)) = compared(fact) {
+            let pairs = (ends.next().into_iter().flatten()).zip(ends.next().into_iter().flatten());
+            for (tally, (&first, &second)) in tallies.iter_mut().zip(pairs) {
+                tally.comparison(Ending::of(first, second), verdict, *sure);
+            }
         }
     }
-    tally
+    tallies
 }

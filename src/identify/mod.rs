@@ -108,36 +108,63 @@ pub struct Sample {
     pub complete: bool,
 }
 
-/// How many words of two symbols lead on to acceptance (section 5.3, "Tomita
-/// languages").
-fn room(dfa: &Dfa, state: StateId) -> u32 {
-    let next = |state| dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
-    let ends = next(state).flat_map(next);
-    ends.filter(|&end| dfa.is_accepting(end)).count() as u32
+/// How words end in an automaton.
+#[derive(Clone, Debug)]
+pub struct Ends<'a> {
+    dfa: &'a Dfa,
+    /// By state, whether it is a rejecting sink.
+    sunk: Vec<bool>,
+    /// By state, how many words of two symbols lead on to acceptance (section 5.3,
+    /// "Tomita languages").
+    room: Vec<u32>,
+}
+
+impl<'a> Ends<'a> {
+    /// In this automaton.
+    pub fn new(dfa: &'a Dfa) -> Self {
+        let next = |state| dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
+        let stays = |state| next(state).all(|to| to == state);
+        let room = |state| {
+            next(state)
+                .flat_map(next)
+                .filter(|&end| dfa.is_accepting(end))
+        };
+        Self {
+            dfa,
+            sunk: (dfa.states())
+                .map(|state| !dfa.is_accepting(state) && stays(state))
+                .collect(),
+            room: dfa
+                .states()
+                .map(|state| room(state).count() as u32)
+                .collect(),
+        }
+    }
+
+    /// How a word over its alphabet ends.
+    pub fn of(&self, word: &Word) -> End {
+        let step = |state: StateId, depth: usize| Step {
+            depth: depth as u32,
+            accepting: self.dfa.is_accepting(state),
+            sunk: self.sunk[state.index()],
+        };
+        let mut state = self.dfa.start();
+        let mut progress = step(state, 0).progress(None);
+        for (read, symbol) in word.iter().enumerate() {
+            state = self.dfa.next(state, symbol);
+            progress = step(state, read + 1).progress(Some(progress));
+        }
+        let inside = self.dfa.is_accepting(state);
+        let merit = if inside {
+            self.room[state.index()]
+        } else {
+            progress
+        };
+        End::new(inside, Some(state.index() as u32), merit)
+    }
 }
 
 /// How a word ends in an automaton.
 pub fn end(dfa: &Dfa, word: &Word) -> End {
-    let is_sink = |state: StateId| {
-        let mut symbols = dfa.alphabet().symbols();
-        !dfa.is_accepting(state) && symbols.all(|symbol| dfa.next(state, symbol) == state)
-    };
-    let step = |state: StateId, depth: usize| Step {
-        depth: depth as u32,
-        accepting: dfa.is_accepting(state),
-        sunk: is_sink(state),
-    };
-    let mut state = dfa.start();
-    let mut progress = step(state, 0).progress(None);
-    for (read, symbol) in word.iter().enumerate() {
-        state = dfa.next(state, symbol);
-        progress = step(state, read + 1).progress(Some(progress));
-    }
-    let inside = dfa.is_accepting(state);
-    let merit = if inside { room(dfa, state) } else { progress };
-    End {
-        inside,
-        place: Some(state.index() as u32),
-        merit,
-    }
+    Ends::new(dfa).of(word)
 }

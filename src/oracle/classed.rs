@@ -65,7 +65,7 @@ impl<C: ConceptClass> Goal for ClassGoal<C> {
             Order::Ordered => {
                 let [first, second] = [first, second].map(|atom| {
                     let end = self.class.end(&self.concept, atom);
-                    (end.inside, end.merit)
+                    (end.is_inside(), end.merit())
                 });
                 match first.cmp(&second) {
                     std::cmp::Ordering::Less => Comparison::Second,

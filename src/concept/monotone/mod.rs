@@ -28,7 +28,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::search::{Consistent, consistent};
 use super::blame::blame;
-use super::{ConceptClass, Contradiction, End, Failure, Sample, Spread, Weighted, Wish, tally};
+use super::{ConceptClass, Contradiction, End, Failure, Sample, Spread, Weighted, Wish, tallies};
 use crate::belief::Belief;
 use crate::evidence::{AnswerId, Budget, Fact};
 pub use corners::Corners;
@@ -167,8 +167,8 @@ impl<F: Family> ConceptClass for MonotoneClass<F> {
             let stands_for = (all as f64 / parameters.len().max(1) as f64).ln();
             let of_size = (size as f64).ln() * self.family.dimensions() as f64;
             let prior = (size - least) as f64 * wish.decay.ln() - of_size + stands_for;
-            for concept in parameters {
-                let tally = tally(self, &concept, wish.heard);
+            let tallies = tallies(self, &Vec::from_iter(&parameters), wish.heard);
+            for (concept, tally) in parameters.into_iter().zip(tallies) {
                 let log_weight = prior + belief.log_chance(&tally);
                 match places.entry(self.family.key(&concept)) {
                     // The same concept by another parameter.
@@ -206,11 +206,7 @@ impl<F: Family> ConceptClass for MonotoneClass<F> {
         let merit = if inside { slack } else { 1.0 + slack };
         #[expect(clippy::cast_sign_loss, reason = "it is clamped to 0 and above")]
         let merit = (merit.clamp(0.0, 1.0) * MERITS) as u32;
-        End {
-            inside,
-            place: None,
-            merit,
-        }
+        End::new(inside, None, merit)
     }
 
     fn witnesses(&self, inside: &Point, outside: &Point, count: usize) -> Vec<F::Atom> {

@@ -20,7 +20,7 @@ use self::reduced::Reduced;
 use super::prior::{Applied, Prior, PriorError, product, spelled};
 use super::{Cause, ConceptClass, Contradiction, End, Failure, Heard, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
-use crate::identify::{self, Settings};
+use crate::identify::{self, Ends, Settings};
 use crate::world::World;
 
 /// Words about this long are drawn to check even the smallest hypothesis.
@@ -244,12 +244,17 @@ impl ConceptClass for Situated {
     fn end(&self, concept: &Dfa, atom: &Word) -> End {
         match self.prior.settled(atom) {
             None => identify::end(concept, atom),
-            Some(inside) => End {
-                inside,
-                place: None,
-                merit: 0,
-            },
+            Some(inside) => End::new(inside, None, 0),
         }
+    }
+
+    fn ends(&self, concepts: &[&Dfa], atoms: &[Word]) -> Vec<Vec<End>> {
+        let ends: Vec<Ends<'_>> = concepts.iter().copied().map(Ends::new).collect();
+        let of = |atom| match self.prior.settled(atom) {
+            None => ends.iter().map(|ends| ends.of(atom)).collect(),
+            Some(inside) => vec![End::new(inside, None, 0); concepts.len()],
+        };
+        atoms.iter().map(of).collect()
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

@@ -5,10 +5,11 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::LARGEST;
 use super::memo::{self, Memo};
 use super::script::{Run, Script};
 use super::shape::Shape;
-use crate::belief::{Belief, Tally};
+use crate::belief::Belief;
 
 /// A complete table all of whose states are reachable, and how it stands.
 #[derive(Clone, Debug)]
@@ -25,8 +26,8 @@ pub(crate) struct Standing {
     prior: f64,
     /// The logarithm of the likelihood.
     pub(crate) likelihood: f64,
-    /// What it makes of what was heard.
-    pub(crate) tally: Tally,
+    /// Whether something certain is not true of it.
+    pub(crate) refuted: bool,
 }
 
 /// What all chains share.
@@ -45,7 +46,7 @@ impl Ground<'_> {
         Standing {
             prior: self.shape.log_prior(delta, output.len()),
             likelihood: self.belief.log_chance(&tally),
-            tally,
+            refuted: tally.is_refuted(),
         }
     }
 }
@@ -81,8 +82,6 @@ const SAME_OUTPUT: f64 = 0.7;
 pub(crate) struct Mover {
     spare: Option<Machine>,
     run: Run,
-    reached: Vec<bool>,
-    stack: Vec<u8>,
     /// None of what not all states of can be reached.
     memo: Memo<Option<Standing>, 12>,
 }
@@ -134,36 +133,28 @@ impl Mover {
         if let Some(known) = key.and_then(|key| self.memo.get(key)) {
             return known;
         }
-        let standing = self
-            .is_reachable(machine, ground.symbols)
+        let standing = is_reachable(machine, ground.symbols)
             .then(|| ground.judge(&machine.delta, &machine.output, &mut self.run));
         if let Some(key) = key {
             self.memo.keep(key, standing);
         }
         standing
     }
+}
 
-    fn is_reachable(&mut self, machine: &Machine, symbols: usize) -> bool {
-        let states = machine.states();
-        self.reached.clear();
-        self.reached.resize(states, false);
-        self.reached[0] = true;
-        self.stack.clear();
-        self.stack.push(0);
-        let mut count = 1;
-        while let Some(state) = self.stack.pop() {
-            let row = usize::from(state) * symbols;
-            for &target in &machine.delta[row..row + symbols] {
-                let reached = &mut self.reached[usize::from(target)];
-                if !*reached {
-                    *reached = true;
-                    count += 1;
-                    self.stack.push(target);
-                }
-            }
-        }
-        count == states
+/// Whether every state can be reached from the first.
+fn is_reachable(machine: &Machine, symbols: usize) -> bool {
+    const { assert!(LARGEST < u64::BITS as usize) };
+    let mut reached: u64 = 1;
+    let mut left = reached;
+    while left != 0 {
+        let row = left.trailing_zeros() as usize * symbols;
+        let row = &machine.delta[row..row + symbols];
+        let targets = row.iter().fold(0, |targets, &to| targets | 1 << to);
+        left = (left & (left - 1)) | (targets & !reached);
+        reached |= targets;
     }
+    reached.count_ones() as usize == machine.states()
 }
 
 /// Lets one edge lead elsewhere.
@@ -198,21 +189,25 @@ fn split(machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) -> Op
         return None;
     }
     let old = rng.random_range(0..states);
-    let into: Vec<usize> = (0..machine.delta.len())
-        .filter(|&edge| usize::from(machine.delta[edge]) == old)
-        .collect();
-    if into.is_empty() {
+    let leads_there = |target: &&mut u8| usize::from(**target) == old;
+    let into = machine.delta.iter_mut().filter(leads_there).count();
+    if into == 0 {
         return None;
     }
-    let row: Vec<u8> = machine.delta[old * symbols..(old + 1) * symbols].to_vec();
+    let row = old * symbols..(old + 1) * symbols;
+    machine.delta.extend_from_within(row);
+    let (before, new) = machine.delta.split_at_mut(states * symbols);
+    let mut edges = before.iter_mut().filter(leads_there);
     let mut moved = 0;
     if rng.random() {
-        machine.delta[into[rng.random_range(0..into.len())]] = states as u8;
+        if let Some(edge) = edges.nth(rng.random_range(0..into)) {
+            *edge = states as u8;
+        }
         moved = 1;
     } else {
-        for &edge in &into {
+        for edge in edges {
             if rng.random() {
-                machine.delta[edge] = states as u8;
+                *edge = states as u8;
                 moved += 1;
             }
         }
@@ -220,19 +215,16 @@ fn split(machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) -> Op
     if moved == 0 {
         return None;
     }
-    for &target in &row {
-        let target = if rng.random::<f64>() >= COPIED {
-            rng.random_range(0..=states) as u8
-        } else if usize::from(target) == old && rng.random() {
-            states as u8
-        } else {
-            target
-        };
-        machine.delta.push(target);
+    for target in new {
+        if rng.random::<f64>() >= COPIED {
+            *target = rng.random_range(0..=states) as u8;
+        } else if usize::from(*target) == old && rng.random() {
+            *target = states as u8;
+        }
     }
     let output = machine.output[old] ^ (rng.random::<f64>() >= SAME_OUTPUT);
     machine.output.push(output);
-    let chance = split_chance(machine, &row, old, [moved, into.len()]);
+    let chance = split_chance(machine, symbols, old, [moved, into]);
     exchange(machine, symbols, rng.random_range(1..=states), states);
     Some(-chance)
 }
@@ -245,7 +237,6 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
     }
     exchange(machine, symbols, rng.random_range(1..=last), last);
     let old = rng.random_range(0..last);
-    let mut row: Vec<u8> = machine.delta[old * symbols..(old + 1) * symbols].to_vec();
     let mut moved = 0;
     let mut into = 0;
     for edge in 0..last * symbols {
@@ -253,12 +244,7 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
         moved += usize::from(target == last);
         into += usize::from(target == last || target == old);
     }
-    for target in &mut row {
-        if usize::from(*target) == last {
-            *target = old as u8;
-        }
-    }
-    let chance = split_chance(machine, &row, old, [moved, into]);
+    let chance = split_chance(machine, symbols, old, [moved, into]);
     for target in &mut machine.delta {
         if usize::from(*target) == last {
             *target = old as u8;
@@ -270,17 +256,19 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
 }
 
 /// The logarithm of the chance with which [`split`] draws the last state of a
-/// machine from state `old`, which had this row and so many edges into it, of
-/// which so many were moved.
-fn split_chance(machine: &Machine, row: &[u8], old: usize, [moved, into]: [usize; 2]) -> f64 {
+/// machine from state `old`, which had so many edges into it, of which so many were
+/// moved.
+fn split_chance(machine: &Machine, symbols: usize, old: usize, [moved, into]: [usize; 2]) -> f64 {
     let last = machine.states() - 1;
     let into = into as f64;
     let one = if moved == 1 { 0.5 / into } else { 0.0 };
     let mut chance = (one + 0.5 * (-into).exp2()).ln();
-    let new = &machine.delta[last * row.len()..];
+    let row = &machine.delta[old * symbols..(old + 1) * symbols];
+    let new = &machine.delta[last * symbols..];
     for (&target, &copied) in new.iter().zip(row) {
         let (target, copied) = (usize::from(target), usize::from(copied));
-        let copy = if copied == old {
+        // An edge of the old state that was moved had led to itself.
+        let copy = if copied == old || copied == last {
             f64::from(u8::from(target == old || target == last)) / 2.0
         } else {
             f64::from(u8::from(target == copied))

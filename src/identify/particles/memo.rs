@@ -1,6 +1,8 @@
 //! What was found of tables that chains come to again and again. Must not know what
 //! that is.
 
+use std::ops::{BitOr, Shl};
+
 /// What was found of tables lately: each has a place of its own, of `1 << BITS`, until
 /// another takes it.
 pub(super) struct Memo<T, const BITS: u32> {
@@ -45,8 +47,23 @@ pub(super) fn key(delta: &[u8], output: &[bool]) -> Option<u128> {
     if bits > u128::BITS as usize {
         return None;
     }
-    let targets = (delta.iter()).fold(1, |key: u128, &to| key << width | u128::from(to));
-    Some((output.iter()).fold(targets, |key, &accepting| key << 1 | u128::from(accepting)))
+    // Most tables fit into a word, which is shifted faster.
+    let fits = bits <= u64::BITS as usize;
+    Some(if fits {
+        packed::<u64>(delta, output, width).into()
+    } else {
+        packed::<u128>(delta, output, width)
+    })
+}
+
+fn packed<N>(delta: &[u8], output: &[bool], width: u32) -> N
+where
+    N: From<u8> + From<bool> + Shl<u32, Output = N> + BitOr<Output = N>,
+{
+    let targets = delta
+        .iter()
+        .fold(N::from(1_u8), |key, &to| key << width | to.into());
+    (output.iter()).fold(targets, |key, &accepting| key << 1 | accepting.into())
 }
 
 #[cfg(test)]

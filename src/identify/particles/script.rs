@@ -20,10 +20,25 @@ const NOWHERE: u8 = u8::MAX;
 /// The words of a script on a table.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Run {
-    /// The state at every node.
-    at: Vec<u8>,
-    /// How long the word of every node did well.
-    progress: Vec<u32>,
+    at: Vec<At>,
+}
+
+/// A node of a [`Run`]: its state, and above that how long its word did well.
+#[derive(Clone, Copy, Debug, Default)]
+struct At(u32);
+
+impl At {
+    fn new(state: u8, progress: u32) -> Self {
+        Self(progress << u8::BITS | u32::from(state))
+    }
+
+    fn state(self) -> usize {
+        usize::from(self.0 as u8)
+    }
+
+    fn progress(self) -> u32 {
+        self.0 >> u8::BITS
+    }
 }
 
 /// All that was heard so far.
@@ -106,23 +121,19 @@ impl Script {
             !output[*state] && delta[row].iter().all(|&t| usize::from(t) == *state)
         };
         let sink = (0..output.len()).find(is_sink).map_or(NOWHERE, |s| s as u8);
-        run.at.resize(self.nodes, 0);
-        run.progress.resize(self.nodes, 0);
+        run.at.resize(self.nodes, At::default());
         let step = |state: u8, depth| Step {
             depth,
             accepting: output[usize::from(state)],
             sunk: state == sink,
         };
-        run.at[0] = 0;
-        run.progress[0] = step(0, 0).progress(None);
+        run.at[0] = At::new(0, step(0, 0).progress(None));
         for (depth, nodes) in (1..).zip(&self.levels) {
             for node in nodes {
-                let parent = node.parent as usize;
-                let edge = usize::from(run.at[parent]) * self.symbols + node.symbol as usize;
-                let state = delta[edge];
-                let before = run.progress[parent];
-                run.at[node.number as usize] = state;
-                run.progress[node.number as usize] = step(state, depth).progress(Some(before));
+                let parent = run.at[node.parent as usize];
+                let state = delta[parent.state() * self.symbols + node.symbol as usize];
+                let progress = step(state, depth).progress(Some(parent.progress()));
+                run.at[node.number as usize] = At::new(state, progress);
             }
         }
     }
@@ -131,7 +142,7 @@ impl Script {
     pub(crate) fn tally(&self, delta: &[u8], output: &[bool], run: &Run) -> Tally {
         let mut tally = Tally::default();
         for &(node, accepted, sure) in &self.labels {
-            let out = output[usize::from(run.at[node as usize])];
+            let out = output[run.at[node as usize].state()];
             tally.label(out == accepted, sure);
         }
         if self.comparisons.is_empty() {
@@ -139,14 +150,10 @@ impl Script {
         }
         let room = self.room(delta, output);
         let end = |node: u32| {
-            let state = run.at[node as usize];
-            let inside = output[usize::from(state)];
-            let merits = [run.progress[node as usize], room[usize::from(state)].into()];
-            End {
-                inside,
-                place: Some(state.into()),
-                merit: merits[usize::from(inside)],
-            }
+            let at = run.at[node as usize];
+            let inside = output[at.state()];
+            let merits = [at.progress(), room[at.state()].into()];
+            End::new(inside, Some(at.state() as u32), merits[usize::from(inside)])
         };
         for &(first, second, verdict, sure) in &self.comparisons {
             tally.comparison(Ending::of(end(first), end(second)), verdict, sure);
@@ -179,7 +186,7 @@ pub(crate) struct Step {
     pub(crate) sunk: bool,
 }
 
-/// More than the length of any word.
+/// More than the length of any word; what comes after it fits beside a state.
 const AFLOAT: u32 = 1 << 16;
 
 impl Step {

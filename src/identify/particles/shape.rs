@@ -76,13 +76,13 @@ impl Shape {
         let mut loops = 0_u32;
         let mut permuting = true;
         for symbol in 0..symbols {
-            let mut seen = [0_u128; 2];
+            let mut seen: u64 = 0;
             for state in 0..states {
                 let target = usize::from(delta[state * symbols + symbol]);
                 loops += u32::from(target == state);
-                let bit = 1_u128 << (target % 128);
-                permuting &= seen[target / 128] & bit == 0;
-                seen[target / 128] |= bit;
+                let bit = 1 << target;
+                permuting &= seen & bit == 0;
+                seen |= bit;
             }
         }
         let plain = add_logs(size.even, size.staying + f64::from(loops) * size.stay);

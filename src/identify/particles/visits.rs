@@ -45,7 +45,7 @@ impl Visits {
     /// Takes note of a visit; of automata that are refuted or not minimal none is
     /// taken.
     pub(super) fn add(&mut self, ladder: usize, machine: &Machine) {
-        if machine.standing.tally.is_refuted() {
+        if machine.standing.refuted {
             return;
         }
         if let Some(key) = memo::key(&machine.delta, &machine.output) {

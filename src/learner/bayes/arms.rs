@@ -59,7 +59,7 @@ fn losses<A: Clone + Ord + Hash, K>(
     match question {
         Question::Membership { atom } => {
             let concepts = ends(atom)?.iter().zip(&table.weights);
-            let inside = concepts.filter(|(end, _)| end.inside);
+            let inside = concepts.filter(|(end, _)| end.is_inside());
             let accept = inside.map(|(_, weight)| weight).sum::<f64>().min(1.0);
             Some(Losses::of_membership(config, accept, 1.0 - accept))
         }

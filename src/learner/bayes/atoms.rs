@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::posterior::Posterior;
 use crate::belief::{End, Heard, Tally};
-use crate::concept::{ConceptClass, tally};
+use crate::concept::{ConceptClass, tallies};
 use crate::learner::Learner;
 
 /// The simplest atoms of the universe, as many.
@@ -65,12 +65,8 @@ impl<A: Clone + Ord + Hash> Table<A> {
         }
         atoms.sort_unstable();
         atoms.dedup();
-        let ends = (atoms.iter())
-            .map(|atom| concepts.iter().map(|c| class.end(c, atom)).collect())
-            .collect();
-        let tallies = (concepts.iter())
-            .map(|concept| tally(class, concept, heard))
-            .collect();
+        let ends = class.ends(&concepts, &atoms);
+        let tallies = tallies(class, &concepts, heard);
         Self {
             atoms,
             ends,

@@ -1,6 +1,9 @@
 //! What a question is worth: the information about the concept that its answer
 //! is expected to bring, for its cost.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use super::atoms::Table;
 use super::entropy;
 use crate::belief::{End, Tally};
@@ -83,32 +86,21 @@ pub(super) fn best<C: ConceptClass>(
         return [membership, None];
     }
     let outlook = Outlook::new(table, wrong);
-    let open = |accept: f64| accept > NOTHING && accept < 1.0 - NOTHING;
-    // Labels that are sure on both sides cannot be told apart.
-    let stride = table.weights.len().div_ceil(ROUGHLY);
-    let mut pairs: Vec<(f32, usize, usize)> = Vec::new();
-    for one in 0..table.atoms.len() {
-        for other in 0..one {
-            if open(accepts[one]) || open(accepts[other]) {
-                let (first, second) = (&table.ends[other], &table.ends[one]);
-                pairs.push((outlook.bits(first, second, stride), other, one));
-            }
-        }
-    }
-    pairs.sort_by(|(one, ..), (other, ..)| other.total_cmp(one));
-    let asked = |&(_, one, other): &(f32, usize, usize)| {
-        let (first, second) = (&table.atoms[one], &table.atoms[other]);
+    let mut pairs = rough_looks(table, &outlook, &accepts);
+    let may_ask = |pair: &Pair| {
+        let (first, second) = (&table.atoms[pair.first], &table.atoms[pair.second]);
         learner.evidence.may_compare(first, second)
     };
     let taught = 1.0 + HABITS / (1.0 + f64::from(learner.counts().comparison) / FAMILIAR);
-    for (_, one, other) in pairs.into_iter().filter(asked).take(CLOSELY) {
-        let (first, second) = (&table.ends[one], &table.ends[other]);
+    let likeliest_first = std::iter::from_fn(|| pairs.pop());
+    for pair in likeliest_first.filter(may_ask).take(CLOSELY) {
+        let ends = [pair.first, pair.second].map(|atom| &*table.ends[atom]);
         let worth = Worth {
-            bits: taught * f64::from(outlook.bits(first, second, 1)),
+            bits: taught * f64::from(outlook.bits(ends)),
             cost: config.comparison_cost,
         };
         if beats(&comparison, worth) {
-            let (first, second) = (table.atoms[one].clone(), table.atoms[other].clone());
+            let [first, second] = [pair.first, pair.second].map(|atom| table.atoms[atom].clone());
             comparison = Some((Question::Comparison { first, second }, worth));
         }
     }
@@ -125,6 +117,66 @@ const FAMILIAR: f64 = 3.3;
 /// looked at more closely then.
 const ROUGHLY: usize = 48;
 const CLOSELY: usize = 256;
+
+/// The places of two atoms in the table, and the bits that comparing them seems to
+/// bring.
+struct Pair {
+    bits: f32,
+    first: usize,
+    second: usize,
+}
+
+/// What seems to bring more comes later; of the same, what comes first in the table.
+impl Ord for Pair {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let place = |pair: &Self| (pair.second, pair.first);
+        let bits = self.bits.total_cmp(&other.bits);
+        bits.then_with(|| place(other).cmp(&place(self)))
+    }
+}
+
+impl PartialOrd for Pair {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Pair {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Pair {}
+
+/// All pairs of atoms whose comparison could tell something, by a few of the
+/// concepts.
+fn rough_looks<A>(table: &Table<A>, outlook: &Outlook, accepts: &[f64]) -> BinaryHeap<Pair> {
+    let stride = table.weights.len().div_ceil(ROUGHLY);
+    let rough = outlook.every(stride);
+    // What is looked at again and again lies together.
+    let ends: Vec<Vec<End>> = (table.ends.iter())
+        .map(|ends| ends.iter().copied().step_by(stride).collect())
+        .collect();
+    // Labels that are sure on both sides cannot be told apart.
+    let open: Vec<bool> = (accepts.iter())
+        .map(|&accept| accept > NOTHING && accept < 1.0 - NOTHING)
+        .collect();
+    let mut pairs = Vec::new();
+    for second in 0..ends.len() {
+        for first in 0..second {
+            if open[first] || open[second] {
+                let bits = rough.bits([&ends[first], &ends[second]]);
+                pairs.push(Pair {
+                    bits,
+                    first,
+                    second,
+                });
+            }
+        }
+    }
+    pairs.into()
+}
 
 /// What the concepts expect of comparisons.
 struct Outlook {
@@ -153,11 +205,18 @@ impl Outlook {
         }
     }
 
-    /// The bits about the concept that the answer to a comparison is expected to
-    /// bring, by every `stride`-th concept.
-    fn bits(&self, first: &[End], second: &[End], stride: usize) -> f32 {
+    /// The same by every `stride`-th concept.
+    fn every(&self, stride: usize) -> Self {
+        Self {
+            parts: self.parts.iter().copied().step_by(stride).collect(),
+        }
+    }
+
+    /// The bits about the concept that the answer to a comparison of atoms that end
+    /// like this is expected to bring.
+    fn bits(&self, [first, second]: [&[End]; 2]) -> f32 {
         let mut sums = [0.0_f32; 8];
-        for ((&first, &second), part) in first.iter().zip(second).zip(&self.parts).step_by(stride) {
+        for ((&first, &second), part) in first.iter().zip(second).zip(&self.parts) {
             let part = &part[Ending::of(first, second) as usize];
             for (sum, part) in sums.iter_mut().zip(part) {
                 *sum += part;
@@ -182,7 +241,7 @@ fn judgement(accept: f64, wrong: f64) -> f64 {
 
 fn mass(ends: &[End], weights: &[f64]) -> f64 {
     (ends.iter().zip(weights))
-        .filter(|(end, _)| end.inside)
+        .filter(|(end, _)| end.is_inside())
         .map(|(_, weight)| weight)
         .sum()
 }
