@@ -1,8 +1,10 @@
 //! `memrep backup`: a copy of the database, made while a server writes.
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::{Context as _, bail};
 use clap::ArgMatches;
@@ -10,7 +12,7 @@ use serde_json::json;
 
 use super::database;
 use super::output::{self, Output, counted};
-use crate::store::{Checked, back_up, now};
+use crate::store::{Checked, back_up, now, partial_of};
 
 /// Arguments of `memrep backup`.
 #[derive(Debug, clap::Args)]
@@ -20,7 +22,8 @@ use crate::store::{Checked, back_up, now};
   memrep backup --to before-the-study.db
 
 The copy is whole and was checked when its name is printed. A folder keeps the
-last ones that were made of this database; a file is never replaced.
+last ones that were made of this database, and nothing of one that was killed
+more than a day ago; a file is never replaced.
 
 Exit status: 0 if the backup is there, 2 if not.")]
 pub(super) struct Args {
@@ -109,14 +112,18 @@ fn into_folder(
     made.sort_unstable();
     let surplus = made.len().saturating_sub(keep);
     let mut removed = Vec::new();
-    let made = made.into_iter().take(surplus).map(|old| old.path);
-    for old in made.filter(|old| *old != path) {
+    let surplus = made.into_iter().take(surplus).map(|old| old.path);
+    let surplus = surplus.chain(abandoned_in(folder, &stem)?);
+    for old in surplus.filter(|old| *old != path) {
         fs::remove_file(&old)
             .with_context(|| format!("{}: it cannot be removed", old.display()))?;
         removed.push(old);
     }
     Ok((path, checked, removed))
 }
+
+/// A backup that nobody wrote to for so long is not being made any more.
+const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// A backup by its name, in the order in which they were made.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,18 +136,38 @@ struct Dated {
 
 /// The backups of this database in the folder.
 fn dated_in(folder: &Path, stem: &str) -> anyhow::Result<Vec<Dated>> {
-    let files = fs::read_dir(folder)
-        .with_context(|| format!("{}: the folder cannot be read", folder.display()))?;
     let mut found = Vec::new();
-    for file in files {
-        let path = file.context("the folder cannot be read")?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if let Some((at, number)) = date(&name, stem) {
+    for path in files_in(folder)? {
+        if let Some((at, number)) = date(&name_of(&path), stem) {
             let at = at.to_owned();
             found.push(Dated { at, number, path });
         }
     }
     Ok(found)
+}
+
+/// What is left of backups of this database that were killed in the middle. Others may
+/// be made right now, so these are older.
+fn abandoned_in(folder: &Path, stem: &str) -> anyhow::Result<Vec<PathBuf>> {
+    let is_abandoned = |path: &PathBuf| {
+        let name = name_of(path);
+        let of_this = partial_of(&name).is_some_and(|whole| date(whole, stem).is_some());
+        let written = || fs::metadata(path)?.modified();
+        of_this && written().is_ok_and(|at| at.elapsed().is_ok_and(|since| since > ABANDONED))
+    };
+    let mut files = files_in(folder)?;
+    files.retain(is_abandoned);
+    Ok(files)
+}
+
+fn files_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let cannot = || format!("{}: the folder cannot be read", folder.display());
+    let files = fs::read_dir(folder).with_context(cannot)?;
+    (files.map(|file| Ok(file.with_context(cannot)?.path()))).collect()
+}
+
+fn name_of(path: &Path) -> Cow<'_, str> {
+    path.file_name().unwrap_or_default().to_string_lossy()
 }
 
 /// When a backup was made by its name, `memrep-20260131T120000Z.db`, or the same with

@@ -261,6 +261,16 @@ fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     name.into()
 }
 
+/// Between the name of a file and the number of what is not whole yet.
+const PARTIAL: &str = ".partial-";
+
+/// The name that a file would have got which was not whole yet; none of others.
+pub fn partial_of(name: &str) -> Option<&str> {
+    let (whole, number) = name.rsplit_once(PARTIAL)?;
+    let is_number = number.len() == 16 && number.bytes().all(|digit| digit.is_ascii_hexdigit());
+    is_number.then_some(whole)
+}
+
 /// A file that is not whole yet; goes away unless it becomes one.
 struct Partial {
     path: PathBuf,
@@ -271,7 +281,7 @@ impl Partial {
         // Not by the process: in a container all have the same number, and one that was
         // killed leaves its file behind.
         let number = getrandom::u64().map_err(|error| fault(to, error.to_string()))?;
-        let path = with_suffix(to, &format!(".partial-{number:016x}"));
+        let path = with_suffix(to, &format!("{PARTIAL}{number:016x}"));
         let new = OpenOptions::new().write(true).create_new(true).open(&path);
         match new {
             Ok(_) => Ok(Self { path }),

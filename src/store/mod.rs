@@ -17,7 +17,7 @@ mod visits;
 use std::io::Read;
 
 pub(crate) use backup::now;
-pub use backup::{Checked, back_up, check_backup, restore};
+pub use backup::{Checked, back_up, check_backup, partial_of, restore};
 pub use id::{InviteKey, NoInviteKey, NoSessionId, NoUploadId, SessionId, UploadId};
 #[cfg(feature = "postgres")]
 pub use postgres::Postgres;

@@ -1,7 +1,7 @@
 //! Backups are whole, and what was backed up can be put back.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use memrep::store::{SessionId, Sqlite, Store, back_up, check_backup};
 use serde_json::{Value, json};
@@ -124,6 +124,36 @@ fn of_many_backups_in_one_second_the_last_ones_are_kept() {
     }
     let newest = Sqlite::open(made.last().unwrap()).unwrap();
     assert_eq!(newest.read(&session).unwrap().len(), 12);
+}
+
+/// What a backup left that was killed goes, once nobody can be writing to it.
+#[test]
+fn what_a_killed_backup_left_goes_after_a_day() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = folder.path().join("lab.db");
+    drop(Sqlite::open(&database).unwrap());
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).unwrap();
+    let hour = Duration::from_secs(60 * 60);
+    let left = |name: &str, hours: u32| {
+        let path = kept.join(name);
+        let file = std::fs::File::create(&path).unwrap();
+        file.set_modified(SystemTime::now() - hours * hour).unwrap();
+        path
+    };
+    let partial = "20260131T120000Z.db.partial-0123456789abcdef";
+    let old = left(&format!("lab-{partial}"), 25);
+    let others = [
+        left(&format!("lab-{}", partial.replace('0', "1")), 1),
+        left(&format!("other-{partial}"), 25),
+        left("lab.db.partial-notes", 25),
+    ];
+    let mut command = memrep(&["backup", "--database", text(&database)]);
+    command.args(["--to", text(&kept), "--format", "json"]);
+    let told: Value = serde_json::from_str(&done(&mut command)).unwrap();
+    assert_eq!(told["removed"], json!([old]));
+    assert!(!old.exists());
+    assert!(others.iter().all(|other| other.exists()));
 }
 
 #[test]

@@ -74,12 +74,17 @@ fn holds(dfa: &Dfa, fact: &Fact<Word>) -> bool {
 /// All smallest automata, or as many as 100 of them.
 const ALL: usize = 100;
 
+/// Of 2,000 sets of answers, or of as many as `MEMREP_SETS` says.
 #[test]
 fn the_smallest_automata_are_those_of_brute_force_and_of_every_engine() {
+    let sets = match std::env::var("MEMREP_SETS") {
+        Ok(text) => (text.parse()).unwrap_or_else(|e| panic!("MEMREP_SETS={text}: {e}")),
+        Err(_) => 2_000,
+    };
     let brute = Brute::up_to(3, 3);
     let mut draw = Draw::new(1);
     let (mut by_brute_force, mut larger) = (0, 0);
-    for number in 0..2_000 {
+    for number in 0..sets {
         let (alphabet, target, facts) = draw.instance();
         let expected = brute.smallest(&alphabet, &facts);
         let mut first: Option<(usize, Option<BTreeSet<_>>)> = None;

@@ -48,7 +48,8 @@ pub enum AlphabetError {
     Empty,
     /// A name is not of the form `[A-Za-z_0-9]+`.
     #[error(
-        "symbol {position} is named `{name}`: use letters, digits and `_` only, at least one of them"
+        "symbol {position} is named `{}`: use letters, digits and `_` only, at least one of them",
+        name.escape_debug()
     )]
     BadName {
         /// The place in the list, from 0.
@@ -75,7 +76,7 @@ pub enum AlphabetError {
 
 /// A name that an alphabet does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is not a symbol of the alphabet {alphabet}")]
+#[error("`{}` is not a symbol of the alphabet {alphabet}", name.escape_debug())]
 pub struct UnknownSymbol {
     /// The name as given.
     pub name: String,

@@ -51,8 +51,9 @@ impl House {
                 "127.0.0.1:0",
                 "--database",
                 "bench.db",
+                // That a question takes long is on the page of the run.
                 "--log",
-                "warn",
+                "error",
             ])
             .current_dir(folder)
             .stdin(Stdio::null())

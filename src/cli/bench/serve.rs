@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Out;
@@ -106,7 +106,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .enable_all()
         .build()
         .context("the async runtime cannot start")?;
-    let report = runtime.block_on(measure(args, habits))?;
+    let report = runtime.block_on(async {
+        // Whoever ends this ends its server too, which goes with what measures it.
+        let stop = serve::stop_signal()?;
+        tokio::select! {
+            report = measure(args, habits) => report,
+            () = stop => bail!("stopped before the end; nothing was written"),
+        }
+    })?;
     let file = |extension: &str| args.out.out.join(format!("serve.{extension}"));
     files::write(&file("csv"), &people::csv(&report)?)?;
     files::write(&file("svg"), &people::figure(&report)?)?;
