@@ -58,3 +58,56 @@ fn a_small_crowd_is_served_and_told_of() {
     assert!(page.contains("## Sessions that nobody teaches") && page.contains("20 sessions"));
     assert!(read("serve.svg").starts_with("<svg "));
 }
+
+/// The processes that work in this folder or below.
+#[cfg(target_os = "linux")]
+fn at_work_in(folder: &Path) -> usize {
+    let processes = std::fs::read_dir("/proc").unwrap();
+    let places = processes.map(|process| std::fs::read_link(process.unwrap().path().join("cwd")));
+    places
+        .filter(|place| place.as_ref().is_ok_and(|place| place.starts_with(folder)))
+        .count()
+}
+
+/// Waits until that many processes work there.
+#[cfg(target_os = "linux")]
+fn wait_for(many: usize, folder: &Path) {
+    let begun = std::time::Instant::now();
+    while at_work_in(folder) != many {
+        assert!(begun.elapsed().as_secs() < 30, "not {many} at work");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn stopped_in_the_middle_it_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().canonicalize().unwrap();
+    let mut bench = Command::new(env!("CARGO_BIN_EXE_memrep"))
+        .args([
+            "bench",
+            "serve",
+            "--people",
+            "2",
+            "--seconds",
+            "300",
+            "--out",
+        ])
+        .arg(folder.join("out"))
+        .env("TMPDIR", &folder)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for(1, &folder);
+    let process = rustix::process::Pid::from_child(&bench);
+    rustix::process::kill_process(process, rustix::process::Signal::TERM).unwrap();
+    assert_eq!(bench.wait().unwrap().code(), Some(2));
+    wait_for(0, &folder);
+    let left: Vec<_> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|file| file.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["out"]);
+    assert_eq!(std::fs::read_dir(folder.join("out")).unwrap().count(), 0);
+}

@@ -4,6 +4,7 @@
 use automata::{Alphabet, Dfa};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use smallvec::{SmallVec, smallvec};
 
 use super::partial::NONE;
 
@@ -28,6 +29,9 @@ pub(crate) struct Leaf {
 
 /// A complete table in some numbering, and the outputs of its states.
 pub(crate) type Table = (Vec<u32>, Vec<bool>);
+
+/// A number for every state: most tables have few, and there are many tables.
+pub(crate) type Small = SmallVec<[u32; 16]>;
 
 impl Leaf {
     /// The leaf at which a search stands: its table with [`NONE`] for free
@@ -204,10 +208,22 @@ impl Leaf {
 
 /// The automaton of a table whose start state is 0 and all of whose states are
 /// reachable, numbered breadth first.
-pub(crate) fn canonical(alphabet: &Alphabet, (delta, output): &Table) -> Dfa {
-    let symbols = alphabet.len();
-    let mut order = vec![0_u32];
-    let mut number = vec![NONE; output.len()];
+pub(crate) fn canonical(alphabet: &Alphabet, table: &Table) -> Dfa {
+    automaton(alphabet, breadth_first(table))
+}
+
+/// The automaton of a table whose start state is 0.
+pub(crate) fn automaton(alphabet: &Alphabet, (delta, output): Table) -> Dfa {
+    let targets = delta.into_iter().map(|target| target as usize);
+    Dfa::from_targets(alphabet.clone(), 0, output, targets)
+        .expect("a table has a target for every state and symbol")
+}
+
+/// The same table with its states numbered breadth first.
+pub(crate) fn breadth_first((delta, output): &Table) -> Table {
+    let symbols = delta.len() / output.len();
+    let mut order: Small = smallvec![0];
+    let mut number: Small = smallvec![NONE; output.len()];
     number[0] = 0;
     let mut next = 0;
     while let Some(&state) = order.get(next) {
@@ -220,15 +236,17 @@ pub(crate) fn canonical(alphabet: &Alphabet, (delta, output): &Table) -> Dfa {
             }
         }
     }
-    let rows: Vec<Vec<usize>> = (order.iter())
-        .map(|&state| {
-            let row = state as usize * symbols;
-            (delta[row..row + symbols].iter())
-                .map(|&target| number[target as usize] as usize)
-                .collect()
-        })
-        .collect();
-    let accepting = order.iter().map(|&s| output[s as usize]).collect();
-    Dfa::new(alphabet.clone(), 0, accepting, &rows)
-        .expect("every reachable state was numbered, so every target has a row")
+    let mut table = (
+        Vec::with_capacity(delta.len()),
+        Vec::with_capacity(output.len()),
+    );
+    for &state in &order {
+        let row = state as usize * symbols;
+        let targets = delta[row..row + symbols].iter();
+        table
+            .0
+            .extend(targets.map(|&target| number[target as usize]));
+        table.1.push(output[state as usize]);
+    }
+    table
 }

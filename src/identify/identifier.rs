@@ -190,15 +190,13 @@ impl Identifier {
                 at_least: self.at_least,
             });
         }
-        let listed = spread::list(&self.problem, &self.standing, bound, wish);
-        let met = spread::met(self.problem.alphabet(), particles.met());
-        let astray = wish.heard.iter().flatten().all(|heard| heard.sure) && particles.are_astray();
-        self.particles = Some(particles);
-        if let Some(listed) = listed {
+        let particles = self.particles.insert(particles);
+        if let Some(listed) = spread::list(&self.problem, &self.standing, bound, wish) {
             return Ok(listed);
         }
-        if !met.concepts.is_empty() && !astray {
-            return Ok(met);
+        let astray = wish.heard.iter().flatten().all(|heard| heard.sure) && particles.are_astray();
+        if !particles.met().is_empty() && !astray {
+            return Ok(spread::met(self.problem.alphabet(), particles.met()));
         }
         // Whether anything is consistent, only a search can tell; and what was met
         // by chains that are astray says little of what is.

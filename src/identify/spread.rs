@@ -4,9 +4,10 @@
 use std::collections::BTreeMap;
 
 use automata::{Alphabet, Dfa, Word};
+use smallvec::smallvec;
 
 use super::Sample;
-use super::completion::{Table, canonical};
+use super::completion::{Small, Table, automaton, breadth_first};
 use super::grow::Lister;
 use super::instance::Instance;
 use super::particles::Posterior;
@@ -85,7 +86,7 @@ pub(crate) fn list(
     let posterior = Posterior::new(problem.alphabet().len(), bound, wish);
     let weighted = |table: Table| Weighted {
         log_weight: posterior.log_chance(&table),
-        concept: canonical(problem.alphabet(), &table),
+        concept: automaton(problem.alphabet(), table),
     };
     Some(Spread {
         concepts: listed.into_iter().map(weighted).collect(),
@@ -97,8 +98,9 @@ pub(crate) fn list(
 
 /// The automata that chains met, by their shares.
 pub(crate) fn met(alphabet: &Alphabet, shares: &BTreeMap<Table, f64>) -> Spread<Dfa> {
+    // They were numbered when they were met.
     let weighted = |(table, &share): (&Table, &f64)| Weighted {
-        concept: canonical(alphabet, table),
+        concept: automaton(alphabet, table.clone()),
         log_weight: share.ln(),
     };
     Spread {
@@ -133,48 +135,13 @@ pub(crate) fn table(dfa: &Dfa) -> Table {
     (delta.collect(), output.collect())
 }
 
-/// The same table with its states numbered breadth first.
-pub(crate) fn breadth_first((delta, output): &Table) -> Table {
-    let symbols = delta.len() / output.len();
-    let mut order = vec![0_u32];
-    let mut number = vec![u32::MAX; output.len()];
-    number[0] = 0;
-    let mut next = 0;
-    while let Some(&state) = order.get(next) {
-        next += 1;
-        let row = state as usize * symbols;
-        for &target in &delta[row..row + symbols] {
-            if number[target as usize] == u32::MAX {
-                number[target as usize] = order.len() as u32;
-                order.push(target);
-            }
-        }
-    }
-    let mut table = (
-        Vec::with_capacity(delta.len()),
-        Vec::with_capacity(output.len()),
-    );
-    for &state in &order {
-        let row = state as usize * symbols;
-        let targets = delta[row..row + symbols].iter();
-        table
-            .0
-            .extend(targets.map(|&target| number[target as usize]));
-        table.1.push(output[state as usize]);
-    }
-    table
-}
-
 /// Whether no two states accept the same words: Moore's refinement, which needs
 /// no queues for tables this small.
 pub(crate) fn is_minimal((delta, output): &Table) -> bool {
     let states = output.len();
     let symbols = delta.len() / states;
-    let mut block: Vec<u32> = output
-        .iter()
-        .map(|&accepting| u32::from(accepting))
-        .collect();
-    let mut next = vec![0; states];
+    let mut block: Small = output.iter().map(|&accepting| accepting.into()).collect();
+    let mut next: Small = smallvec![0; states];
     let mut blocks = 0;
     loop {
         let mut count = 0;

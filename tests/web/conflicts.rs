@@ -217,7 +217,18 @@ async fn check(
     let expected = words(cause, single, compares);
     let message = conflict["message"].as_str().unwrap();
     assert!(message.contains(expected), "{message}");
-    let page = site.get(&format!("/sessions/{id}")).await.text;
+    let look = async || site.get(&format!("/sessions/{id}")).await.text;
+    let mut page = look().await;
+    // A page does not wait long for what would follow: a busy machine is asked again.
+    for _ in 0..20 {
+        if answers
+            .iter()
+            .all(|number| !follows(&page, *number).is_empty())
+        {
+            break;
+        }
+        page = look().await;
+    }
     assert!(page.contains(message), "{message}: {page}");
     assert!(page.contains(&heading(answers.len())), "{page}");
     for number in &answers {

@@ -72,6 +72,18 @@ pub enum DfaError {
         /// The number of symbols.
         symbols: usize,
     },
+    /// The table does not have one entry for every state and symbol.
+    #[error(
+        "the table must have an entry for each of {states} states and {symbols} symbols, and has {entries}"
+    )]
+    Entries {
+        /// The number of entries.
+        entries: usize,
+        /// The number of states.
+        states: usize,
+        /// The number of symbols.
+        symbols: usize,
+    },
     /// An entry names a state that does not exist.
     #[error(
         "row {state}, symbol {symbol}: state {target} does not exist, states are numbered from 0 to {last}", last = states - 1
@@ -101,46 +113,67 @@ impl Dfa {
         accepting: Vec<bool>,
         delta: &[Vec<usize>],
     ) -> Result<Self, DfaError> {
-        let states = accepting.len();
+        let (states, symbols) = (accepting.len(), alphabet.len());
+        if start < states && delta.len() != states {
+            return Err(DfaError::Rows {
+                rows: delta.len(),
+                states,
+            });
+        }
+        let is_short_or_long = |row: &Vec<usize>| row.len() != symbols;
+        if let Some(state) = delta.iter().position(is_short_or_long) {
+            return Err(DfaError::Columns {
+                state,
+                entries: delta[state].len(),
+                symbols,
+            });
+        }
+        Self::from_targets(alphabet, start, accepting, delta.iter().flatten().copied())
+    }
+
+    /// The automaton with this table, row by row: `targets` has the next states of
+    /// state 0 in the order of the symbols, then those of state 1.
+    ///
+    /// # Errors
+    ///
+    /// If the table is not complete or names a state that does not exist.
+    pub fn from_targets(
+        alphabet: Alphabet,
+        start: usize,
+        accepting: Vec<bool>,
+        targets: impl IntoIterator<Item = usize>,
+    ) -> Result<Self, DfaError> {
+        let (states, symbols) = (accepting.len(), alphabet.len());
         if states == 0 {
             return Err(DfaError::NoStates);
         }
         if start >= states {
             return Err(DfaError::BadStart { start, states });
         }
-        if delta.len() != states {
-            return Err(DfaError::Rows {
-                rows: delta.len(),
-                states,
-            });
-        }
-        let symbols = alphabet.len();
-        let mut table = Vec::with_capacity(states * symbols);
-        for (state, row) in delta.iter().enumerate() {
-            if row.len() != symbols {
-                return Err(DfaError::Columns {
-                    state,
-                    entries: row.len(),
-                    symbols,
+        let mut delta = Vec::with_capacity(states * symbols);
+        for (entry, target) in targets.into_iter().enumerate() {
+            if target >= states {
+                return Err(DfaError::BadTarget {
+                    state: entry / symbols,
+                    symbol: entry % symbols,
+                    target,
+                    states,
                 });
             }
-            for (symbol, &target) in row.iter().enumerate() {
-                if target >= states {
-                    return Err(DfaError::BadTarget {
-                        state,
-                        symbol,
-                        target,
-                        states,
-                    });
-                }
-                table.push(StateId::new(target));
-            }
+            delta.push(StateId::new(target));
+        }
+        if delta.len() != states * symbols {
+            return Err(DfaError::Entries {
+                entries: delta.len(),
+                states,
+                symbols,
+            });
         }
         Ok(Self {
             alphabet,
             start: StateId::new(start),
             accepting,
-            delta: table,
+            delta,
         })
     }
 

@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 use super::chain::Machine;
 use super::memo::{self, Memo};
 use super::{AGREEING, LADDERS, NEAR, numberings};
-use crate::identify::completion::Table;
-use crate::identify::spread::{breadth_first, is_minimal};
+use crate::identify::completion::{Table, breadth_first};
+use crate::identify::spread::is_minimal;
 
 /// A share of the posterior that does not matter.
 const NEGLIGIBLE: f64 = 1e-7;

@@ -201,7 +201,7 @@ fn dfa_error(error: &DfaError) -> ReadError {
     let path = match error {
         DfaError::NoStates => "states".to_owned(),
         DfaError::BadStart { .. } => "start".to_owned(),
-        DfaError::Rows { .. } => "delta".to_owned(),
+        DfaError::Rows { .. } | DfaError::Entries { .. } => "delta".to_owned(),
         DfaError::Columns { state, .. } => format!("delta[{state}]"),
         DfaError::BadTarget { state, symbol, .. } => format!("delta[{state}][{symbol}]"),
     };
