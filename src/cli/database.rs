@@ -27,6 +27,24 @@ pub(super) fn named(flags: &ArgMatches) -> anyhow::Result<String> {
     Ok(settings::resolve::<serve::Args>(flags)?.0.database)
 }
 
+/// What names a database: for `SQLite` nothing would be a database that is gone when it
+/// is closed.
+///
+/// # Errors
+///
+/// If it names none, or is the address of one of another kind; its password is not told.
+pub(super) fn name(text: &str) -> Result<String, String> {
+    if text.trim().is_empty() {
+        return Err("it names no file: give one, such as memrep.db".to_owned());
+    }
+    match text.split_once("://") {
+        Some((scheme, _)) if !is_elsewhere(text) => Err(format!(
+            "`{scheme}://` is no address of a database that memrep knows: give a file, or postgres://USER@HOST/NAME"
+        )),
+        _ => Ok(text.to_owned()),
+    }
+}
+
 /// Whether this is the address of a database and no file.
 pub(super) fn is_elsewhere(database: &str) -> bool {
     database.starts_with("postgres://") || database.starts_with("postgresql://")

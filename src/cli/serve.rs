@@ -45,7 +45,8 @@ pub(crate) struct Args {
     pub(super) addr: SocketAddr,
     /// The database file in which sessions are kept, created if there is none; or the
     /// address of a `PostgreSQL` database that several servers share.
-    #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db")]
+    #[arg(long, value_name = "PATH|ADDRESS", default_value = "memrep.db",
+          value_parser = database::name)]
     pub(super) database: String,
     /// How long one of several people has a question before it is offered to
     /// another, in seconds.

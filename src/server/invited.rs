@@ -421,7 +421,7 @@ async fn follow(
     let view = move |session: &Session| guest.admit(session);
     app.teaching.look(guest.session, view).await??;
     let seat = Seat::Invited { place };
-    let news = live::news(&app, guest.session, headers, seat).await?;
+    let news = live::news(&app, guest.session, headers, seat, Some(guest)).await?;
     Ok(news.into_response())
 }
 

@@ -18,6 +18,7 @@ use tokio_stream::{Stream, StreamExt};
 use super::AppState;
 use super::api::session_id;
 use super::error::{ApiError, WebError};
+use super::invited::Guest;
 use super::owner::{self, Seat};
 use crate::session::Session;
 use crate::store::SessionId;
@@ -82,15 +83,17 @@ pub(crate) async fn live(
     headers: HeaderMap,
 ) -> Result<impl IntoResponse, ApiError> {
     let session = session_id(&id)?;
-    Ok(news(&app, session, headers, Seat::Teacher { session }).await?)
+    Ok(news(&app, session, headers, Seat::Teacher { session }, None).await?)
 }
 
-/// News of this session for whoever sits there and may have them.
+/// News of this session for whoever sits there and may have them, for as long as they
+/// visit and the session knows them.
 pub(crate) async fn news(
     app: &AppState,
     id: SessionId,
     headers: HeaderMap,
     seat: Seat,
+    guest: Option<Guest>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>> + use<>>, WebError> {
     let entries = app.teaching.look(id, Session::entries).await?;
     let mut news = app.teaching.live().follow(id, entries);
@@ -109,7 +112,12 @@ pub(crate) async fn news(
                         Err(_) => return,
                     },
                     _ = tick.tick() => {
-                        if !owner::stays(&app, &headers, &seat).await {
+                        // A session that is busy says nothing against them.
+                        let knows = move |session: &Session| {
+                            guest.is_none_or(|guest| guest.admit(session).is_ok())
+                        };
+                        let known = app.teaching.look(id, knows).await;
+                        if !known.unwrap_or(true) || !owner::stays(&app, &headers, &seat).await {
                             return;
                         }
                     }

@@ -152,6 +152,15 @@ async fn open_streams_end_with_the_visit_by_which_they_were_opened() {
         assert_eq!(next(stream).await, Some(None));
     }
 
+    // By dismissal: whoever is not wanted any more hears nothing more.
+    sign_in(&site).await;
+    let bo = site.elsewhere();
+    let place = bo.enter(&invite(&site, &session, "Bo").await).await;
+    let mut theirs = followed(&bo, &format!("{place}/live")).await;
+    site.form(&format!("{page}/people/2/dismissal"), &[]).await;
+    while let Some(Some(_)) = next(&mut theirs).await {}
+    assert_eq!(next(&mut theirs).await, Some(None));
+
     // By time, and by another password: the owner's and an invited person's.
     sign_in(&site).await;
     let ada = site.elsewhere();
