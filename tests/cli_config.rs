@@ -82,6 +82,99 @@ fn what_is_wrong_is_told_and_what_may_be_meant_is_asked() {
 }
 
 #[test]
+fn a_log_that_would_tell_nothing_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |variables: &[(&str, &str)], arguments: &[&str]| {
+        let output = config(folder.path(), variables, arguments);
+        (
+            output.status.code(),
+            text(output.stdout) + &text(output.stderr),
+        )
+    };
+    for wrong in [
+        "inof",
+        "",
+        "info,wran",
+        "memrep::server=debgu",
+        "serve=debug",
+    ] {
+        let (code, told) = said(&[], &["--log", wrong]);
+        assert_eq!(code, Some(2), "{wrong}: {told}");
+        assert!(told.contains("debug, trace or off"), "{wrong}: {told}");
+    }
+    for right in [
+        "OFF",
+        "info, memrep::server=debug",
+        "memrep",
+        "warn,hyper=debug",
+    ] {
+        let (code, told) = said(&[("RUST_LOG", "wrong")], &["--log", right]);
+        assert_eq!(code, Some(0), "{right}: {told}");
+    }
+    let (code, told) = said(&[("RUST_LOG", "hyper=debug")], &[]);
+    assert_eq!(code, Some(2));
+    assert!(told.starts_with("error: RUST_LOG: "), "{told}");
+    // As where something else starts it with all variables that it knows.
+    let (code, told) = said(&[("RUST_LOG", "")], &[]);
+    assert_eq!(code, Some(0), "{told}");
+    std::fs::write(folder.path().join("memrep.toml"), "log = \"nonsense\"\n").unwrap();
+    let (code, told) = said(&[], &[]);
+    assert_eq!(code, Some(2));
+    assert!(told.contains("memrep.toml, line 1, column 7: "), "{told}");
+}
+
+#[test]
+fn what_is_no_database_is_refused_and_its_password_is_not_told() {
+    let folder = tempfile::tempdir().unwrap();
+    for (wrong, why) in [
+        ("", "names no file"),
+        (" ", "names no file"),
+        ("mysql://ann:s3cret@db/lab", "`mysql://` is no address"),
+        ("host=db user=ann password=s3cret", "postgres://USER"),
+    ] {
+        let flag = ["--database", wrong];
+        let variable = [("MEMREP_DATABASE", wrong)];
+        for output in [
+            config(folder.path(), &[], &flag),
+            config(folder.path(), &variable, &[]),
+        ] {
+            assert_eq!(output.status.code(), Some(2));
+            let said = text(output.stderr);
+            assert!(said.contains(why) && !said.contains("s3cret"), "{said}");
+        }
+    }
+    // Nor where it was never meant to stand.
+    let misplaced = config(folder.path(), &[], &["postgres://ann:s3cret@db/lab"]);
+    let said = text(misplaced.stderr);
+    assert!(said.contains("postgres://ann:***@db/lab"), "{said}");
+}
+
+#[test]
+fn a_file_of_settings_is_text_and_its_numbers_are_in_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("memrep.toml");
+    for (bytes, why) in [
+        (
+            b"lease = 60\n# \xff\n".as_slice(),
+            "memrep.toml: line 2, column 3: this is not UTF-8",
+        ),
+        (
+            b"lease = 99999999999999999999\n",
+            "column 9: invalid value '99999999999999999999'",
+        ),
+        (b"lease = 1.5\n", "`lease` is a whole number"),
+    ] {
+        std::fs::write(&file, bytes).unwrap();
+        let wrong = config(folder.path(), &[], &[]);
+        let said = text(wrong.stderr);
+        assert_eq!(wrong.status.code(), Some(2), "{said}");
+        assert!(said.contains(why), "{said}");
+    }
+    std::fs::write(&file, "\u{feff}lease = 60\n").unwrap();
+    assert!(config(folder.path(), &[], &[]).status.success());
+}
+
+#[test]
 fn commands_beside_the_server_take_its_database() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("memrep.toml"), "database = \"lab.db\"\n").unwrap();

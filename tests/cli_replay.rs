@@ -157,6 +157,15 @@ fn any_moment_of_the_past_can_be_looked_at() {
             }
         }
     }
+    // What the learner would go on with is no entry of the log.
+    let begun = out(&replay(&log, &["--at", "0", "--format", "json"]));
+    let begun: Value = serde_json::from_str(&begun).unwrap();
+    assert_eq!(
+        (&begun["entries"], &begun["state"]),
+        (&json!(1), &json!("asking"))
+    );
+    let none = json!({"membership": 0, "comparison": 0, "equivalence": 0});
+    assert_eq!(begun["questions"], none);
     let beyond = fault(&replay(&log, &["--at", "9999"]), 2);
     assert!(beyond.contains("there is no entry 9999"), "{beyond}");
 }
@@ -227,6 +236,49 @@ fn what_does_not_follow_is_told_with_its_line() {
         .output()
         .unwrap();
     assert!(fault(&nowhere, 2).contains("no-such-file.jsonl: cannot read it"));
+}
+
+#[test]
+fn bytes_that_are_no_text_are_the_logs_fault_and_a_mark_before_it_is_none() {
+    let (_, events) = taught("tomita:1");
+    let log = written(&events);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.jsonl");
+    let command = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_memrep"));
+        command.arg("replay").arg(&file).arg("--fold");
+        command
+    };
+    std::fs::write(&file, format!("\u{feff}{log}")).unwrap();
+    out(&command().output().unwrap());
+    let (first, rest) = log.split_once('\n').unwrap();
+    let torn = [first.as_bytes(), b"\n\xff", rest.as_bytes()].concat();
+    std::fs::write(&file, torn).unwrap();
+    let told = fault(&command().output().unwrap(), 1);
+    assert!(
+        told.contains("log.jsonl: line 2, column 1: this is not UTF-8"),
+        "{told}"
+    );
+    #[cfg(target_os = "linux")]
+    {
+        // Nobody hears why; the status still tells that it does not stand.
+        let full = std::fs::File::options()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let unheard = command().stderr(full).status().unwrap();
+        assert_eq!(unheard.code(), Some(1));
+    }
+}
+
+#[test]
+fn a_rule_is_written_by_an_ending_that_automata_have() {
+    let (_, events) = taught("tomita:1");
+    let log = written(&events);
+    for name in ["rule.zzz", "rule", "rule.abb", "rule.jsonl"] {
+        let told = fault(&replay(&log, &["--automaton", name]), 2);
+        assert!(told.contains("choose .json, .dot, .svg or .hoa"), "{told}");
+    }
 }
 
 #[test]

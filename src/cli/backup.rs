@@ -60,11 +60,11 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     match args.format {
         Output::Text => {
             output::line(path.display())?;
-            eprintln!(
+            output::note(format_args!(
                 "{} with {}; whole and sound",
                 counted(checked.sessions, "session", "sessions"),
                 counted(checked.entries, "entry", "entries"),
-            );
+            ));
         }
         Output::Json => output::line(json!({
             "path": path,
@@ -89,6 +89,7 @@ fn into_folder(
     folder: &Path,
     keep: usize,
 ) -> anyhow::Result<(PathBuf, Checked, Vec<PathBuf>)> {
+    let is_new = !folder.exists();
     fs::create_dir_all(folder)
         .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
     let stem = database
@@ -107,7 +108,12 @@ fn into_folder(
         None => folder.join(format!("{stem}-{at}.db")),
         Some(last) => folder.join(format!("{stem}-{at}.db.{}", last + 1)),
     };
-    let checked = back_up(database, &path)?;
+    let checked = back_up(database, &path).inspect_err(|_| {
+        if is_new {
+            // It was made for this one.
+            let _ = fs::remove_dir(folder);
+        }
+    })?;
     let mut made = dated_in(folder, &stem)?;
     made.sort_unstable();
     let surplus = made.len().saturating_sub(keep);

@@ -117,7 +117,9 @@ fn tell_strangers(held: &[Held]) {
         };
         if let Some(near) = settings::nearest(&key, &keys).filter(|near| *near != key) {
             let near = settings::variable(near);
-            eprintln!("note: {name} is no setting; did you mean {near}?");
+            output::note(format_args!(
+                "note: {name} is no setting; did you mean {near}?"
+            ));
         }
     }
 }

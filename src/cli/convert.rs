@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use automata::Alphabet;
 
 use super::files::{self, Content, Format};
+use super::output;
 
 /// Arguments of `memrep convert`.
 #[derive(Debug, clap::Args)]
@@ -54,9 +55,9 @@ fn note_lost_names(alphabet: &Alphabet) {
         let table: Vec<String> = names()
             .map(|(place, name)| format!("{place} = {name}"))
             .collect();
-        eprintln!(
+        output::note(format_args!(
             "note: Abbadingo has no names of symbols, keep these: {}",
             table.join(", ")
-        );
+        ));
     }
 }

@@ -32,8 +32,13 @@ pub(super) fn named(flags: &ArgMatches) -> anyhow::Result<String> {
 ///
 /// # Errors
 ///
-/// If it names none, or is the address of one of another kind; its password is not told.
+/// If it names none, or one in a way that is not known here; its password is not told.
 pub(super) fn name(text: &str) -> Result<String, String> {
+    // How libpq's tools are told where a database is: a password among that must not
+    // become the name of a file.
+    const PARTS: [&str; 8] = [
+        "host", "hostaddr", "port", "dbname", "user", "password", "passfile", "service",
+    ];
     if text.trim().is_empty() {
         return Err("it names no file: give one, such as memrep.db".to_owned());
     }
@@ -41,8 +46,16 @@ pub(super) fn name(text: &str) -> Result<String, String> {
         Some((scheme, _)) if !is_elsewhere(text) => Err(format!(
             "`{scheme}://` is no address of a database that memrep knows: give a file, or postgres://USER@HOST/NAME"
         )),
+        None if text.split_once('=').is_some_and(|(part, _)| PARTS.contains(&part.trim())) => Err(
+            "`key=value` pairs name no database here: write postgres://USER:PASSWORD@HOST:PORT/NAME, or ./ before the name of a file".to_owned(),
+        ),
         _ => Ok(text.to_owned()),
     }
+}
+
+/// Whether this is the name of a file that is not there.
+pub(super) fn is_missing(database: &str) -> bool {
+    !is_elsewhere(database) && !Path::new(database).exists()
 }
 
 /// Whether this is the address of a database and no file.

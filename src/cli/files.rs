@@ -66,16 +66,29 @@ impl Format {
 
     /// The format that was asked for by `option`, or else that of the path.
     pub(crate) fn choose(asked: Option<Self>, path: &Path, option: &str) -> anyhow::Result<Self> {
-        if let Some(format) = asked {
-            return Ok(format);
-        }
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        extension.and_then(Self::of_extension).ok_or_else(|| {
+        asked.or_else(|| Self::of_path(path)).ok_or_else(|| {
             anyhow!(
                 "{}: the extension does not tell the format: name it by `{option} FORMAT`",
                 path.display()
             )
         })
+    }
+
+    /// The format that a path's extension stands for.
+    fn of_path(path: &Path) -> Option<Self> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        extension.and_then(Self::of_extension)
+    }
+
+    /// The format in which an automaton is to be written to this path.
+    pub(crate) fn of_automaton(path: &Path) -> anyhow::Result<Self> {
+        match Self::of_path(path) {
+            Some(format) if !matches!(format, Self::Abb | Self::Jsonl) => Ok(format),
+            _ => bail!(
+                "{}: no automaton is written by this ending: choose .json, .dot, .svg or .hoa",
+                path.display()
+            ),
+        }
     }
 }
 
@@ -156,6 +169,11 @@ pub(crate) fn read_sample(
 
 /// The text of a file; of the standard input, if the path is `-`.
 pub(crate) fn text(path: &Path) -> anyhow::Result<String> {
+    utf8(bytes(path)?).with_context(|| path.display().to_string())
+}
+
+/// What is in a file, whatever it is; in the standard input, if the path is `-`.
+pub(crate) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if path == Path::new("-") {
         std::io::stdin().lock().read_to_end(&mut bytes)
@@ -163,15 +181,21 @@ pub(crate) fn text(path: &Path) -> anyhow::Result<String> {
         std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes))
     }
     .with_context(|| format!("{}: cannot read it", path.display()))?;
+    Ok(bytes)
+}
+
+/// These bytes as a text, without the mark that some editors put before one.
+pub(crate) fn utf8(mut bytes: Vec<u8>) -> anyhow::Result<String> {
+    const MARK: &[u8] = "\u{feff}".as_bytes();
+    if bytes.starts_with(MARK) {
+        bytes.drain(..MARK.len());
+    }
     String::from_utf8(bytes).map_err(|error| {
         // As many characters as were read before the bad byte.
         let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
         let line = good.split('\n').count();
         let column = good.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        anyhow!(
-            "{}: line {line}, column {column}: this is not UTF-8: save the file as UTF-8 text",
-            path.display()
-        )
+        anyhow!("line {line}, column {column}: this is not UTF-8: save the file as UTF-8 text")
     })
 }
 

@@ -158,13 +158,13 @@ fn warn_of_order(sample: &automata::Sample, lines: &[ItemLine]) -> anyhow::Resul
     let Some(conflict) = order.conflict() else {
         return Ok(());
     };
-    eprintln!(
+    output::note(format_args!(
         "warning: no order agrees with these lines. {} What is found treats them all alike.",
         output::because(conflict.cause, &output::AUTOMATA)
-    );
+    ));
     for answer in &conflict.answers {
         let line = &lines[answer.0 as usize];
-        eprintln!("  line {}: {}", line.number, line.text);
+        output::note(format_args!("  line {}: {}", line.number, line.text));
     }
     Ok(())
 }

@@ -86,11 +86,10 @@ enum Command {
 
 /// Parses the command line, runs the command, and reports what went wrong.
 pub fn main() -> ExitCode {
-    let given = Cli::command().get_matches();
-    let cli = match Cli::from_arg_matches(&given) {
-        Ok(cli) => cli,
-        Err(error) => error.format(&mut Cli::command()).exit(),
-    };
+    let given = Cli::command().try_get_matches();
+    let given = given.unwrap_or_else(|error| refuse(&error));
+    let cli = Cli::from_arg_matches(&given);
+    let cli = cli.unwrap_or_else(|error| refuse(&error.format(&mut Cli::command())));
     // Which flags were given, and not only what holds, is for the settings to know.
     #[cfg(feature = "server")]
     let flags = given.subcommand().map_or(&given, |(_, flags)| flags);
@@ -123,7 +122,17 @@ pub fn main() -> ExitCode {
             // Whoever reads has seen enough, as `head` does.
             return ExitCode::SUCCESS;
         }
-        eprintln!("error: {error:#}");
+        output::note(format_args!("error: {error:#}"));
         ExitCode::from(2)
     })
+}
+
+/// Says what is wrong with the arguments, or gives the help that they ask for, and ends.
+fn refuse(error: &clap::Error) -> ! {
+    #[cfg(feature = "server")]
+    if let Some(told) = settings::without_passwords(error) {
+        output::note(told.trim_end());
+        std::process::exit(error.exit_code());
+    }
+    error.exit()
 }

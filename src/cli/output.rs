@@ -27,6 +27,14 @@ pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
     writeln!(std::io::stdout(), "{text}").context("the standard output: cannot write to it")
 }
 
+/// Tells people something beside the result, on the standard error.
+///
+/// Unlike `eprintln!` it does not panic where nobody reads that: what was to be done is
+/// done all the same.
+pub(crate) fn note(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
 /// Whether a command failed because nobody reads its standard output any more.
 pub(crate) fn is_closed(error: &anyhow::Error) -> bool {
     let causes = error

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Context as _, bail};
 use clap::ArgMatches;
 
-use super::{database, settings};
+use super::{database, output, settings};
 use crate::server::hash_password;
 
 /// More than any password has.
@@ -35,16 +35,32 @@ pub(super) struct Args {
 /// Runs the command, given how it was called.
 pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     let database = database::named(flags)?;
-    let hash = if args.remove {
-        None
-    } else {
-        Some(hash_password(&ask()?)?)
-    };
-    let store = database::open(&database)?;
-    store.visits().set_password(hash.as_deref())?;
-    let done = if args.remove { "removed" } else { "set" };
     let named = settings::masked(&database);
-    println!("The owner's password of {named} is {done}. All visits have ended.");
+    let is_new = database::is_missing(&database);
+    if args.remove {
+        if is_new {
+            bail!("{named}: there is no such database: name one with --database");
+        }
+        let store = database::open(&database)?;
+        if store.visits().password()?.is_none() {
+            output::line(format!(
+                "{named} has no owner's password: nothing was changed."
+            ))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        store.visits().set_password(None)?;
+        output::line(format!(
+            "The owner's password of {named} is removed. All visits have ended."
+        ))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let hash = hash_password(&ask()?)?;
+    let store = database::open(&database)?;
+    store.visits().set_password(Some(&hash))?;
+    let new = if is_new { ", a new database," } else { "" };
+    output::line(format!(
+        "The owner's password of {named}{new} is set. All visits have ended."
+    ))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -100,8 +116,9 @@ fn unseen(prompt: &str) -> anyhow::Result<String> {
     const BACKSPACE: u8 = 0x08;
     const CLEAR: u8 = 0x15;
     const DELETE: u8 = 0x7f;
-    eprint!("{prompt}");
-    std::io::stderr().flush()?;
+    let mut screen = std::io::stderr();
+    write!(screen, "{prompt}")?;
+    screen.flush()?;
     let mut typed: Vec<u8> = Vec::new();
     let mut keys = std::io::stdin().lock().take(MOST_BYTES).bytes();
     let ended = loop {
@@ -117,7 +134,7 @@ fn unseen(prompt: &str) -> anyhow::Result<String> {
             Some(byte) => typed.push(byte),
         }
     };
-    eprintln!();
+    output::note("");
     if !ended {
         bail!("no password was given, so nothing was changed");
     }

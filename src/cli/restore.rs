@@ -48,13 +48,16 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     match args.format {
         Output::Text => {
             output::line(database.display())?;
-            eprintln!(
+            output::note(format_args!(
                 "{} with {}; whole and sound",
                 counted(checked.sessions, "session", "sessions"),
                 counted(checked.entries, "entry", "entries"),
-            );
+            ));
             if let Some(aside) = aside {
-                eprintln!("what was there is kept as {}", aside.display());
+                output::note(format_args!(
+                    "what was there is kept as {}",
+                    aside.display()
+                ));
             }
         }
         Output::Json => output::line(json!({

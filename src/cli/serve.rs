@@ -12,7 +12,7 @@ use clap::ArgMatches;
 use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
 
-use super::{database, log, settings};
+use super::{database, log, output, settings};
 use crate::server::{self, AppState, Limits, Origin, Reached};
 use crate::store::Store;
 
@@ -55,7 +55,7 @@ pub(crate) struct Args {
     pub(super) lease: u32,
     /// What is logged: error, warn, info, debug, trace or off, also by the part of
     /// the program, as in `info,memrep::server=debug`. `RUST_LOG` is heard too.
-    #[arg(long, value_name = "LEVEL", default_value = "info")]
+    #[arg(long, value_name = "LEVEL", default_value = "info", value_parser = log::levels)]
     pub(super) log: Targets,
     /// Lines of the log for people, or one JSON object a line.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = log::Format::Text)]
@@ -167,16 +167,18 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
     };
     let state = AppState::with_lease(opened.store, lease);
     let mut state = state.reached(reached).with_limits(limits);
-    println!("memrep is at http://{at}/");
+    say(format_args!("memrep is at http://{at}/"));
     for origin in origins {
-        println!("People reach it at {origin}/");
+        say(format_args!("People reach it at {origin}/"));
     }
     let database = settings::masked(&args.database);
-    println!("Sessions are kept in {database}. Stop with Ctrl+C.");
+    say(format_args!(
+        "Sessions are kept in {database}. Stop with Ctrl+C."
+    ));
     tracing::info!(version = env!("CARGO_PKG_VERSION"), addr = %at, database, "started");
     if let Some(listener) = opened.figures {
         let at = listener.local_addr().context("the address is unknown")?;
-        println!("Figures are at http://{at}/metrics");
+        say(format_args!("Figures are at http://{at}/metrics"));
         state = state.with_figures_apart();
         tokio::spawn(server::run_figures(listener, state.clone()));
     }
@@ -186,6 +188,11 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
     };
     server::run(opened.listener, state, stop).await;
     Ok(())
+}
+
+/// Tells whoever started the server; it serves also where nobody reads that.
+fn say(text: std::fmt::Arguments<'_>) {
+    let _ = output::line(text);
 }
 
 /// Lets the process have as many connections as the system allows it: a common bound

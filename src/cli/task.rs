@@ -94,7 +94,9 @@ fn new(path: &Path) -> anyhow::Result<ExitCode> {
         }
         Err(error) => return Err(error).with_context(|| format!("{name}: cannot write it")),
     }
-    eprintln!("{name} is written: change it, and run `memrep task check {name}`");
+    output::note(format_args!(
+        "{name} is written: change it, and run `memrep task check {name}`"
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -146,7 +148,7 @@ fn check(args: &Check) -> anyhow::Result<ExitCode> {
             return Ok(ExitCode::from(2));
         }
         Err(unusable) => {
-            eprintln!("{unusable}");
+            output::note(unusable);
             return Ok(ExitCode::from(2));
         }
     };

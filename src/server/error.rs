@@ -129,6 +129,7 @@ impl WebError {
                 | Refusal::NoBound
                 | Refusal::BadAnswers
                 | Refusal::BadName
+                | Refusal::UnshownName
                 | Refusal::OwnersAnswer
                 | Refusal::BadBound { .. },
             )
@@ -172,7 +173,7 @@ impl WebError {
                 Refusal::NoBound => "no_bound",
                 Refusal::BadBound { .. } => "bad_bound",
                 Refusal::BadAnswers => "bad_answers",
-                Refusal::BadName => "bad_name",
+                Refusal::BadName | Refusal::UnshownName => "bad_name",
                 Refusal::TooManyPeople => "too_many_people",
                 Refusal::NoPerson => "not_invited",
                 Refusal::Said { .. } => "already_answered",
@@ -215,7 +216,7 @@ impl WebError {
                 Refusal::Looked { .. } => Some("looked"),
                 Refusal::BadBound { .. } => Some("max_states"),
                 Refusal::BadAnswers => Some("answers"),
-                Refusal::BadName | Refusal::TooManyPeople => Some("name"),
+                Refusal::BadName | Refusal::UnshownName | Refusal::TooManyPeople => Some("name"),
                 Refusal::NothingToUndo
                 | Refusal::NoBound
                 | Refusal::NoPerson

@@ -112,6 +112,11 @@ pub enum Refusal {
     /// Nobody is called that.
     #[error("give a name of 1 to {MAX_NAME} characters")]
     BadName,
+    /// A name of which some is not shown, or turns round what stands beside it.
+    #[error(
+        "there are control characters in this name, which cannot be shown: type it anew without them"
+    )]
+    UnshownName,
     /// There are enough people.
     #[error("a session has at most {MAX_PEOPLE} people: begin another one of the same task")]
     TooManyPeople,

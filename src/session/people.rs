@@ -106,8 +106,11 @@ impl Session {
     /// If there are too many, or the name is no name.
     pub fn invite(&self, name: &str, session: Option<String>) -> Result<Decision, Refusal> {
         let name = name.trim();
-        if name.is_empty() || name.chars().count() > MAX_NAME || name.chars().any(is_disruptive) {
+        if name.is_empty() || name.chars().count() > MAX_NAME {
             return Err(Refusal::BadName);
+        }
+        if name.chars().any(is_disruptive) {
+            return Err(Refusal::UnshownName);
         }
         if self.panel.people().len() >= MAX_PEOPLE {
             return Err(Refusal::TooManyPeople);

@@ -196,6 +196,9 @@ fn outline(connection: &Connection) -> rusqlite::Result<(i64, Option<String>)> {
 
 /// Opens a database of ours to read it.
 fn open(path: &Path) -> Result<Connection, StoreError> {
+    if let Some(message) = schema::no_file(path) {
+        return Err(fault(path, message));
+    }
     let unusable = |error: rusqlite::Error| damaged(path, &error);
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags).map_err(unusable)?;

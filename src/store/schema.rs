@@ -1,5 +1,8 @@
 //! The tables, and how those of an earlier version become those of this one.
 
+use std::fs;
+use std::path::Path;
+
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use super::StoreError;
@@ -75,6 +78,16 @@ CREATE TABLE visits (
 CREATE INDEX visits_by_time ON visits (begun);
 ",
 ];
+
+/// Why no database can be at this path, if there is something that is no file.
+pub(super) fn no_file(path: &Path) -> Option<&'static str> {
+    let kind = fs::metadata(path).ok()?.file_type();
+    match () {
+        () if kind.is_file() => None,
+        () if kind.is_dir() => Some("it is a folder; name a file"),
+        () => Some("it is no ordinary file; name another"),
+    }
+}
 
 /// Refuses a file that this program did not write, before anything touches it.
 pub(super) fn check_header(

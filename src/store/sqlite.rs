@@ -7,7 +7,7 @@ use std::time::Duration;
 use rusqlite::ffi::{SQLITE_IOERR_SHMSIZE, SQLITE_IOERR_WRITE};
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, TransactionBehavior, params};
 
-use super::schema::{bring_up_to_date, check_header, earlier_version};
+use super::schema::{bring_up_to_date, check_header, earlier_version, no_file};
 use super::together::Together;
 use super::{
     Entry, InviteKey, Listed, NewFile, SessionId, Store, StoreError, StoredFile, UploadId, Visits,
@@ -56,6 +56,12 @@ impl Sqlite {
             },
         }
         };
+        if let Some(message) = no_file(path) {
+            return Err(StoreError::Unusable {
+                message: format!("{message} with --database"),
+                path: shown,
+            });
+        }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_CREATE
             | OpenFlags::SQLITE_OPEN_NO_MUTEX;

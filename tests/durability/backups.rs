@@ -189,6 +189,7 @@ fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
         ("empty.db", "empty"),
         ("gap.db", "is missing"),
         ("nowhere.db", "check that it is there"),
+        ("", "it is a folder"),
     ] {
         let said = refused(&mut memrep(&[
             "restore",
@@ -205,8 +206,18 @@ fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
         said.contains("pg_dump") && !said.contains("secret"),
         "{said}"
     );
-    let said = refused(&mut memrep(&["backup", "--database", text(&at("none.db"))]));
-    assert!(said.contains("no such database"), "{said}");
+    let copies = at("copies");
+    for (name, part) in [("none.db", "no such database"), ("", "it is a folder")] {
+        let said = refused(&mut memrep(&[
+            "backup",
+            "--database",
+            text(&at(name)),
+            "--to",
+            text(&copies),
+        ]));
+        assert!(said.contains(part), "{said}");
+        assert!(!copies.exists(), "a folder is made for a backup alone");
+    }
     let (a, good) = (at("a.db"), at("good.db"));
     let said = refused(&mut memrep(&[
         "backup",

@@ -219,6 +219,36 @@ async fn replies_are_as_it_says() {
     assert!(late.status.is_client_error());
 }
 
+/// A client that is made from the description sends what is in it: no key of it may be
+/// one that the server does not know.
+#[tokio::test]
+async fn the_server_knows_every_key_of_an_answer_that_it_describes() {
+    let site = Site::in_memory();
+    let document = description(&site).await;
+    let session = create(&site, json!({"task": "robot"})).await;
+    let person = site
+        .post(&format!("{session}/people"), json!({"name": "Ada"}))
+        .await;
+    let link = person.json()["link"].as_str().unwrap().to_owned();
+    for (schema, at) in [
+        ("Answer", format!("{session}/answers")),
+        ("PersonsAnswer", format!("{API}{link}")),
+    ] {
+        let schema = &document["components"]["schemas"][schema];
+        assert_eq!(schema["additionalProperties"], false);
+        let keys = schema["properties"].as_object().unwrap().keys();
+        // Those of behaviours that are no words belong to other tasks.
+        for key in keys.filter(|key| !["point", "item"].contains(&key.as_str())) {
+            let reply = site.post(&at, json!({ key: "?" })).await;
+            let message = reply.json()["error"]["message"].to_string();
+            assert!(reply.status.is_client_error(), "{key}");
+            assert!(!message.contains("unknown key"), "{at}: {key}: {message}");
+        }
+        let strange = site.post(&at, json!({"tooke": 1})).await;
+        assert!(strange.text.contains("unknown key"), "{}", strange.text);
+    }
+}
+
 /// Who has a password has to be told by the description that it is wanted, and where.
 #[tokio::test]
 async fn it_says_who_must_sign_in_and_how() {

@@ -366,6 +366,16 @@ async fn what_cannot_be_meant_is_refused() {
         );
         assert_eq!(refused.json()["error"]["field"], field, "{body}");
     }
+    for hidden in ["a\u{0}b", "a\nb", "a\u{202e}b"] {
+        let refused = site
+            .post(&format!("{session}/people"), json!({"name": hidden}))
+            .await;
+        let message = &refused.json()["error"]["message"];
+        assert!(
+            message.as_str().unwrap().contains("control characters"),
+            "{hidden:?}: {message}"
+        );
+    }
     let question = site.get(&people[0]).await.json();
     for answer in ["correct", "accept", "first"] {
         let fits = match question["kind"].as_str().unwrap() {

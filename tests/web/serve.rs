@@ -203,6 +203,8 @@ fn what_it_cannot_do_it_says_with_the_way_out() {
         foreign.contains("not an SQLite file") && foreign.contains("--database"),
         "{foreign}"
     );
+    let inside = refused(command(folder.path(), &["--addr", "127.0.0.1:0"]));
+    assert!(inside.contains("it is a folder"), "{inside}");
     let usage = refused(command(&other, &["--addr", "somewhere"]));
     assert!(usage.contains("--addr"), "{usage}");
 }
@@ -238,6 +240,11 @@ fn a_password_is_piped_in_and_opens_the_way_for_other_machines() {
         let told = String::from_utf8(refused.stderr).unwrap();
         assert!(told.contains(why), "{told}");
     }
+    let none = password(&database, &["--remove"], "");
+    assert_eq!(none.status.code(), Some(2));
+    let told = String::from_utf8(none.stderr).unwrap();
+    assert!(told.contains("no such database"), "{told}");
+    assert!(!database.exists(), "nothing is made to remove from");
     let set = password(&database, &[], "correct horse battery\n");
     assert!(
         set.status.success(),
@@ -254,6 +261,10 @@ fn a_password_is_piped_in_and_opens_the_way_for_other_machines() {
     let (status, body) = server.ask("GET", "/api/v1/sessions", &Value::Null);
     assert_eq!(status, 403, "{body}");
     assert!(body.contains("no_password"), "{body}");
+    let again = password(&database, &["--remove"], "");
+    assert!(again.status.success());
+    let told = String::from_utf8(again.stdout).unwrap();
+    assert!(told.contains("nothing was changed"), "{told}");
 }
 
 #[test]

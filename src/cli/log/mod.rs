@@ -14,7 +14,7 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::Layer;
-use tracing_subscriber::filter::{FilterExt as _, Targets, filter_fn};
+use tracing_subscriber::filter::{FilterExt as _, LevelFilter, ParseError, Targets, filter_fn};
 use tracing_subscriber::layer::{Context, SubscriberExt as _};
 use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt as _;
@@ -41,6 +41,39 @@ pub(super) fn start(format: Format, levels: Targets) -> Writer {
         tracing::error!(cause, place = place.as_deref(), "panicked");
     }));
     writer
+}
+
+/// What is to be logged: a level, or parts of the program with one each, with commas
+/// between.
+///
+/// # Errors
+///
+/// If a part is neither, or nothing of this program is meant, as with a level that is
+/// misspelt: that would be a log in which nothing is ever told.
+pub(super) fn levels(text: &str) -> Result<Targets, String> {
+    const LEVELS: &str = "error, warn, info, debug, trace or off";
+    // The parser takes nothing at all for a level as well.
+    let is_level = |text: &str| !text.is_empty() && text.parse::<LevelFilter>().is_ok();
+    let mut is_any = false;
+    for part in text.split(',').map(str::trim) {
+        let target = match part.split_once('=') {
+            Some((target, level)) if is_level(level) => target,
+            Some((_, level)) => return Err(format!("`{level}` is no level: give {LEVELS}")),
+            None if is_level(part) => {
+                is_any = true;
+                continue;
+            }
+            None if is_ours(part) => part,
+            None => return Err(format!("`{part}` is no level: give {LEVELS}")),
+        };
+        is_any |= is_ours(target);
+    }
+    if !is_any {
+        return Err(format!(
+            "no part of memrep is named: give {LEVELS}, or parts as in `memrep::server=debug`"
+        ));
+    }
+    text.parse().map_err(|error: ParseError| error.to_string())
 }
 
 /// Whether this program tells it. Others are not heard, whatever level is asked for:

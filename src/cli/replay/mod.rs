@@ -13,6 +13,7 @@ use automata::format::json::{Document, Provenance};
 use serde_json::Value;
 
 use self::lines::Line;
+use self::report::Put;
 use super::files::{self, Content, Format};
 use super::output::{self, Output};
 use crate::session::{Concept, Event, Position, Session, Task};
@@ -73,6 +74,10 @@ struct Rebuilt {
     session: Session,
     /// The version of memrep that began the log.
     memrep: String,
+    /// What the log had put, before the learner went on from there.
+    put: Put,
+    /// The entries that the log had.
+    entries: usize,
     /// The entries that were worked out again.
     rethought: usize,
     /// Those of them that say less than this version does.
@@ -84,28 +89,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let format = match &args.automaton {
         Some(path) => {
             files::check_folder(path)?;
-            Some(Format::choose(None, path, "the ending of")?)
+            Some(Format::of_automaton(path)?)
         }
         None => None,
     };
-    let text = files::text(&args.log)?;
-    let name = args.log.display();
-    let rebuilt = lines::read(&text).and_then(|mut lines| {
-        if let Some(at) = args.at {
-            let last = lines.len() - 1;
-            if at > last as u64 {
-                bail!(Elsewhere(format!(
-                    "there is no entry {at}: the last one is {last}"
-                )));
-            }
-            lines.truncate(at as usize + 1);
-        }
-        rebuild(args, &lines)
-    });
-    let mut rebuilt = match rebuilt {
+    let bytes = files::bytes(&args.log)?;
+    let mut rebuilt = match rebuild(args, bytes) {
         Ok(rebuilt) => rebuilt,
         Err(error) => {
-            eprintln!("error: {name}: {error:#}");
+            output::note(format_args!("error: {}: {error:#}", args.log.display()));
             // Files beside the log are not the log's fault.
             let is_mine = error.downcast_ref::<Elsewhere>().is_none();
             return Ok(ExitCode::from(if is_mine { 1 } else { 2 }));
@@ -135,8 +127,24 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 #[error("{0}")]
 struct Elsewhere(String);
 
+/// The session, up to the entry that was asked for.
+fn rebuild(args: &Args, log: Vec<u8>) -> anyhow::Result<Rebuilt> {
+    let text = files::utf8(log)?;
+    let mut lines = lines::read(&text)?;
+    if let Some(at) = args.at {
+        let last = lines.len() - 1;
+        if at > last as u64 {
+            bail!(Elsewhere(format!(
+                "there is no entry {at}: the last one is {last}"
+            )));
+        }
+        lines.truncate(at as usize + 1);
+    }
+    fold(args, &lines)
+}
+
 /// Folds the log entry by entry, and works out again what the learner wrote.
-fn rebuild(args: &Args, lines: &[Line<'_>]) -> anyhow::Result<Rebuilt> {
+fn fold(args: &Args, lines: &[Line<'_>]) -> anyhow::Result<Rebuilt> {
     let first = &lines[0];
     let begun = |line: &Line<'_>, message: String| anyhow!("line {}: {message}", line.number);
     let event = first.event()?;
@@ -150,6 +158,8 @@ fn rebuild(args: &Args, lines: &[Line<'_>]) -> anyhow::Result<Rebuilt> {
     let mut rebuilt = Rebuilt {
         session,
         memrep: memrep.clone(),
+        put: Put::default(),
+        entries: lines.len(),
         rethought: 0,
         terse: 0,
     };
@@ -161,6 +171,7 @@ fn rebuild(args: &Args, lines: &[Line<'_>]) -> anyhow::Result<Rebuilt> {
         let applied = rebuilt.session.apply(&event);
         applied.map_err(|error| anyhow!("line {}: {error}", line.number))?;
     }
+    rebuilt.put = Put::of(&rebuilt.session);
     Ok(rebuilt)
 }
 

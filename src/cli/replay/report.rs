@@ -9,7 +9,7 @@ use crate::session::{Position, Session};
 
 /// The questions that were put, and those skipped, by kind.
 #[derive(Default)]
-struct Put {
+pub(super) struct Put {
     membership: usize,
     comparison: usize,
     equivalence: usize,
@@ -17,7 +17,7 @@ struct Put {
 }
 
 impl Put {
-    fn of(session: &Session) -> Self {
+    pub(super) fn of(session: &Session) -> Self {
         let mut put = Self::default();
         let mut number = 1;
         while let Some(asked) = session.asked(number) {
@@ -46,10 +46,10 @@ fn state(session: &Session) -> &'static str {
 /// For programs.
 pub(super) fn json(rebuilt: &Rebuilt) -> Value {
     let session = &rebuilt.session;
-    let put = Put::of(session);
+    let put = &rebuilt.put;
     let standing: Vec<u32> = session.standing().iter().map(|s| s.number).collect();
     json!({
-        "entries": session.entries(),
+        "entries": rebuilt.entries,
         "memrep": rebuilt.memrep,
         "task": session.task().name,
         "setup": session.setup(),
@@ -75,14 +75,14 @@ pub(super) fn text(rebuilt: &Rebuilt) -> anyhow::Result<()> {
     let setup = serde_json::to_value(session.setup()).unwrap_or_default();
     line(format_args!(
         "{} of `{}` ({}), begun by memrep {}; strategy {}, seed {}",
-        counted(session.entries(), "entry", "entries"),
+        counted(rebuilt.entries as u64, "entry", "entries"),
         session.task().name,
         session.task().title,
         rebuilt.memrep,
         setup["strategy"].as_str().unwrap_or_default(),
         session.setup().seed,
     ))?;
-    let put = Put::of(session);
+    let put = &rebuilt.put;
     let total = put.membership + put.comparison + put.equivalence;
     line(format_args!(
         "{} put: {} membership, {} comparison, {} equivalence",

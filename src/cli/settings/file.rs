@@ -87,8 +87,9 @@ fn text(value: &DeValue<'_>, kind: Kind) -> Option<String> {
         (Kind::Text, DeValue::String(text)) => Some(text.to_string()),
         (Kind::Switch, DeValue::Boolean(on)) => Some(on.to_string()),
         (Kind::Whole, DeValue::Integer(number)) => {
-            let number = i64::from_str_radix(number.as_str(), number.radix()).ok()?;
-            Some(number.to_string())
+            // One that is too large is the option's to refuse, as any out of its range.
+            let value = i128::from_str_radix(number.as_str(), number.radix());
+            Some(value.map_or_else(|_| number.to_string(), |value| value.to_string()))
         }
         _ => None,
     }

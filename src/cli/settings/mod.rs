@@ -16,10 +16,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::builder::Command;
+use clap::error::ContextValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args};
 
 use self::file::Given;
+use super::files;
 
 /// The file that is read where none is named.
 const USUAL_FILE: &str = "memrep.toml";
@@ -168,8 +170,8 @@ fn read_file(
         _ => (around.variable)(&variable(NAMES_FILE)).map(PathBuf::from),
     };
     let path = named.clone().unwrap_or_else(|| USUAL_FILE.into());
-    let text = match std::fs::read_to_string(around.folder.join(&path)) {
-        Ok(text) => text,
+    let bytes = match std::fs::read(around.folder.join(&path)) {
+        Ok(bytes) => bytes,
         Err(error) if named.is_none() && error.kind() == std::io::ErrorKind::NotFound => {
             return Ok(Vec::new());
         }
@@ -181,6 +183,7 @@ fn read_file(
             ));
         }
     };
+    let text = files::utf8(bytes).with_context(|| path.display().to_string())?;
     let known: Vec<(String, Kind, bool)> = options
         .iter()
         .filter(|option| key(option) != NAMES_FILE)
@@ -224,6 +227,10 @@ fn held_by(
         let Ok(text) = value.into_string() else {
             bail!("{name}: this is no text: give it in UTF-8, or unset it");
         };
+        // What is set for other programs is often set to nothing.
+        if text.is_empty() && ALSO.iter().any(|(_, also)| *also == name) {
+            continue;
+        }
         return Ok(held(vec![text], Source::Environment(name)));
     }
     if let Some(given) = said.iter().find(|given| given.key == key) {
@@ -258,11 +265,26 @@ fn check(command: &Command, said: &[String], source: &Source) -> anyhow::Result<
     else {
         return Ok(());
     };
-    let text = error.to_string();
+    let text = without_passwords(&error).unwrap_or_else(|| error.to_string());
     let text = text.strip_prefix("error: ").unwrap_or(&text);
     let lines = text.lines().map(str::trim);
     let message: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
-    bail!("{source}: {}", masked(&message.join(" ")))
+    bail!("{source}: {}", message.join(" "))
+}
+
+/// What an error says, without the passwords in what was given; nothing where there are
+/// none.
+pub(super) fn without_passwords(error: &clap::Error) -> Option<String> {
+    let given = error.context().filter_map(|(_, value)| match value {
+        ContextValue::String(text) => Some((text, masked(text))),
+        _ => None,
+    });
+    let mut told = None;
+    for (text, masked) in given.filter(|(text, masked)| *text != masked) {
+        let so_far = told.unwrap_or_else(|| error.to_string());
+        told = Some(so_far.replace(text, &masked));
+    }
+    told
 }
 
 /// The text without the passwords in it: those of addresses such as
