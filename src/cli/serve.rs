@@ -24,7 +24,8 @@ const LAST_WORK: Duration = Duration::from_secs(1);
 /// A new setting is a field here, and nothing else: an option `--idle-time` becomes
 /// the variable `MEMREP_IDLE_TIME` and the key `idle_time` of `memrep.toml`, and is
 /// told by `memrep config`. `Option<T>` is one that need not hold, `Vec<T>` one that
-/// may be said several times (an array in the file), `bool` a switch, `u16` to `u64`
+/// may be said several times (an array in the file, with blanks between in the
+/// variable), `bool` a switch, `u16` to `u64`
 /// a number in the file, and anything else a string there. One whose name ends in
 /// `password` is never shown, nor is a password in an address (`scheme://user:…@`).
 #[derive(Debug, clap::Args)]

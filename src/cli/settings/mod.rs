@@ -231,7 +231,13 @@ fn held_by(
         if text.is_empty() && ALSO.iter().any(|(_, also)| *also == name) {
             continue;
         }
-        return Ok(held(vec![text], Source::Environment(name)));
+        // None of those that may be said several times has a blank in it.
+        let texts = if is_list(option) {
+            text.split_whitespace().map(String::from).collect()
+        } else {
+            vec![text]
+        };
+        return Ok(held(texts, Source::Environment(name)));
     }
     if let Some(given) = said.iter().find(|given| given.key == key) {
         return Ok(held(given.texts.clone(), given.source.clone()));

@@ -136,6 +136,16 @@ fn a_named_file_is_read_instead_of_the_usual_one() {
 }
 
 #[test]
+fn a_variable_has_several_values_with_blanks_between() {
+    let both = "https://a.example  http://b.example:8080";
+    let (args, held) = settings(&[], &[("MEMREP_ORIGIN", both)], None).unwrap();
+    let told: Vec<String> = args.origin.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["https://a.example", "http://b.example:8080"]);
+    let origin = held.iter().find(|held| held.key == "origin").unwrap();
+    assert_eq!(origin.texts, told);
+}
+
+#[test]
 fn passwords_are_not_shown() {
     let cases = [
         ("postgres://ann:s3cret@db/x", "postgres://ann:***@db/x"),
