@@ -19,6 +19,9 @@
 //! - [`mod@bench`]: scripted runs and the tables made of them.
 //! - [`cli`]: the commands of the `memrep` binary.
 
+// They panic where nobody reads: `cli::output` prints.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
+
 pub mod belief;
 pub mod bench;
 pub mod cli;
