@@ -213,6 +213,10 @@ fn what_does_not_follow_is_told_with_its_line() {
             "line 2: entry 1 is none of a session's log: unknown variant `sung`",
         ),
         (
+            with(2, &lines[2].replace('}', ",\"mood\":1}")),
+            "line 3: entry 2 has `mood`, which no entry of its kind has",
+        ),
+        (
             with(1, "{\"event\":\"undone\"}"),
             "line 2: some entries have a number",
         ),

@@ -208,6 +208,27 @@ proptest! {
     }
 }
 
+/// However it is written: a log has it in one way only, and is to be read again.
+#[test]
+fn a_name_has_sixty_characters_at_most() {
+    for (length, fits) in [(60, true), (61, false)] {
+        let name = "x".repeat(length);
+        for symbol in [json!(name), json!({"name": name})] {
+            let read = TaskFile::of_content(&json!({"symbols": [symbol, "b"]}));
+            match read {
+                Ok(file) => {
+                    assert!(fits, "{symbol}");
+                    assert_eq!(&self::read(&file.task.to_toml()), &file.task);
+                }
+                Err(faults) => {
+                    assert!(!fits, "{symbol}: {faults:?}");
+                    assert!(faults[0].message.contains("at most 60"), "{faults:?}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_practice_answer_may_not_contradict_what_is_known() {
     let task = |practice: Value, rest: Value| {

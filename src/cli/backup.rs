@@ -59,20 +59,20 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     };
     match args.format {
         Output::Text => {
-            output::line(path.display())?;
+            output::done(path.display());
             output::note(format_args!(
-                "{} with {}; whole and sound",
+                "{} with {}; every page is whole, and no log has a gap",
                 counted(checked.sessions, "session", "sessions"),
                 counted(checked.entries, "entry", "entries"),
             ));
         }
-        Output::Json => output::line(json!({
+        Output::Json => output::done(json!({
             "path": path,
             "sessions": checked.sessions,
             "entries": checked.entries,
             "version": checked.version,
             "removed": removed,
-        }))?,
+        })),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -76,7 +76,7 @@ fn table(held: &[Held]) -> anyhow::Result<()> {
 fn object(held: &Held) -> Value {
     let typed = |text: String| match held.kind {
         Kind::Text => Value::from(text),
-        Kind::Switch => Value::from(!matches!(text.as_str(), "false" | "0" | "no" | "off")),
+        Kind::Switch => Value::from(text == "true"),
         // It was read as a number before.
         Kind::Whole => text.parse::<u64>().map_or(Value::Null, Value::from),
     };

@@ -27,30 +27,85 @@ pub(super) fn named(flags: &ArgMatches) -> anyhow::Result<String> {
     Ok(settings::resolve::<serve::Args>(flags)?.0.database)
 }
 
-/// What names a database: for `SQLite` nothing would be a database that is gone when it
-/// is closed.
+/// What names a database: a file, or an address in which nothing can be misread. What
+/// is neither may hold a password, which must not become the name of a file.
 ///
 /// # Errors
 ///
-/// If it names none, or one in a way that is not known here; its password is not told.
+/// If it names none; its password is not told.
 pub(super) fn name(text: &str) -> Result<String, String> {
-    // How libpq's tools are told where a database is: a password among that must not
-    // become the name of a file.
+    match fault(text) {
+        None => Ok(text.to_owned()),
+        Some(fault) => Err(fault),
+    }
+}
+
+fn fault(text: &str) -> Option<String> {
+    const WAYS: &str =
+        "write postgres://USER:PASSWORD@HOST:PORT/NAME, or ./ before the name of a file";
+    // How libpq's tools are told where a database is.
     const PARTS: [&str; 8] = [
         "host", "hostaddr", "port", "dbname", "user", "password", "passfile", "service",
     ];
     if text.trim().is_empty() {
-        return Err("it names no file: give one, such as memrep.db".to_owned());
+        return Some("it names no file: give one, such as memrep.db".to_owned());
     }
-    match text.split_once("://") {
-        Some((scheme, _)) if !is_elsewhere(text) => Err(format!(
+    if is_elsewhere(text) {
+        return address_fault(text);
+    }
+    if let Some((scheme, _)) = text.split_once("://") {
+        return Some(format!(
             "`{scheme}://` is no address of a database that memrep knows: give a file, or postgres://USER@HOST/NAME"
-        )),
-        None if text.split_once('=').is_some_and(|(part, _)| PARTS.contains(&part.trim())) => Err(
-            "`key=value` pairs name no database here: write postgres://USER:PASSWORD@HOST:PORT/NAME, or ./ before the name of a file".to_owned(),
-        ),
-        _ => Ok(text.to_owned()),
+        ));
     }
+    if text == ":memory:" || text.starts_with("file:") {
+        return Some(
+            "this is an address of SQLite's own, and no file: give one, such as memrep.db"
+                .to_owned(),
+        );
+    }
+    let is_pair = |(part, _): (&str, &str)| PARTS.contains(&part.trim());
+    if text.split_once('=').is_some_and(is_pair) {
+        return Some(format!("`key=value` pairs name no database here: {WAYS}"));
+    }
+    let slip = ["postgresql", "postgres"].into_iter().any(|scheme| {
+        let rest = text.strip_prefix(scheme).unwrap_or_default();
+        rest.starts_with(':') || rest.starts_with("//")
+    });
+    // As in `user:password@host`, and not as in `C:\\`.
+    let login = text
+        .split_once(':')
+        .is_some_and(|(_, rest)| rest.contains('@') && !rest.starts_with('\\'));
+    (slip || login).then(|| format!("this looks like an address and is none: {WAYS}"))
+}
+
+/// What PostgreSQL's client would read otherwise than it was meant.
+fn address_fault(text: &str) -> Option<String> {
+    let (_, rest) = text.split_once("://")?;
+    if rest.matches('@').count() > 1 {
+        return Some(
+            "there is more than one `@` in it: those of a password are written %40, and its `/` %2F"
+                .to_owned(),
+        );
+    }
+    let rest = rest.split_once('@').map_or(rest, |(_, rest)| rest);
+    let hosts = rest.split(['/', '?']).next()?;
+    let port_of = |host: &str| {
+        Some(
+            host.rsplit_once(':')
+                .filter(|_| !host.ends_with(']'))?
+                .1
+                .parse::<u16>(),
+        )
+    };
+    let wrong = hosts
+        .split(',')
+        .filter_map(port_of)
+        .any(|port| port.is_err());
+    wrong.then(|| {
+        "after the host's `:` stands its port, from 1 to 65535: a user and a password end in `@`"
+            .to_owned()
+    })
 }
 
 /// Whether this is the name of a file that is not there.

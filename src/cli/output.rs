@@ -27,6 +27,14 @@ pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
     writeln!(std::io::stdout(), "{text}").context("the standard output: cannot write to it")
 }
 
+/// Prints a line about what is done: it stays done where that cannot be printed, which
+/// is told instead.
+pub(crate) fn done(text: impl Display) {
+    if let Err(error) = line(text) {
+        note(format_args!("it is done, but {error:#}"));
+    }
+}
+
 /// Tells people something beside the result, on the standard error.
 ///
 /// Unlike `eprintln!` it does not panic where nobody reads that: what was to be done is

@@ -49,18 +49,18 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
             return Ok(ExitCode::SUCCESS);
         }
         store.visits().set_password(None)?;
-        output::line(format!(
+        output::done(format_args!(
             "The owner's password of {named} is removed. All visits have ended."
-        ))?;
+        ));
         return Ok(ExitCode::SUCCESS);
     }
     let hash = hash_password(&ask()?)?;
     let store = database::open(&database)?;
     store.visits().set_password(Some(&hash))?;
     let new = if is_new { ", a new database," } else { "" };
-    output::line(format!(
+    output::done(format_args!(
         "The owner's password of {named}{new} is set. All visits have ended."
-    ))?;
+    ));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -47,9 +47,9 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
     let (checked, aside) = restore(&args.backup, database, args.force)?;
     match args.format {
         Output::Text => {
-            output::line(database.display())?;
+            output::done(database.display());
             output::note(format_args!(
-                "{} with {}; whole and sound",
+                "{} with {}; every page is whole, and no log has a gap",
                 counted(checked.sessions, "session", "sessions"),
                 counted(checked.entries, "entry", "entries"),
             ));
@@ -60,13 +60,13 @@ pub(super) fn run(args: &Args, flags: &ArgMatches) -> anyhow::Result<ExitCode> {
                 ));
             }
         }
-        Output::Json => output::line(json!({
+        Output::Json => output::done(json!({
             "path": database,
             "sessions": checked.sessions,
             "entries": checked.entries,
             "version": checked.version,
             "kept": aside,
-        }))?,
+        })),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use clap::ArgMatches;
 use tokio::net::TcpListener;
 use tracing_subscriber::filter::Targets;
@@ -121,8 +121,13 @@ async fn open(args: &Args) -> anyhow::Result<Opened> {
     };
     let (named, is_public) = (args.database.clone(), is_public(args));
     let opening = tokio::task::spawn_blocking(move || {
+        if is_public && database::is_missing(&named) {
+            return Err(unlocked(&named));
+        }
         let store = database::open(&named)?;
-        refuse_unlocked(&named, is_public, &*store)?;
+        if is_public && store.visits().password()?.is_none() {
+            return Err(unlocked(&named));
+        }
         anyhow::Ok(store)
     });
     let store = opening.await.context("the store cannot be opened")??;
@@ -193,6 +198,7 @@ async fn serve(args: Args, opened: Opened) -> anyhow::Result<()> {
 
 /// Tells whoever started the server; it serves also where nobody reads that.
 fn say(text: std::fmt::Arguments<'_>) {
+    // A reader that is gone, or a full disk, is nobody's loss here.
     let _ = output::line(text);
 }
 
@@ -216,15 +222,12 @@ fn is_public(args: &Args) -> bool {
     !args.addr.ip().is_loopback() || !args.origin.is_empty() || args.behind_proxy
 }
 
-/// Whoever reaches a server without a password can read and answer.
-fn refuse_unlocked(database: &str, is_public: bool, store: &dyn Store) -> anyhow::Result<()> {
-    if is_public && store.visits().password()?.is_none() {
-        bail!(
-            "other machines could reach this server, and it has no owner's password: set one with `memrep password --database {}`; then serve on 127.0.0.1 behind a proxy that has a certificate (memrep serve --behind-proxy --origin https://teach.example.org), since without TLS the password can be read on its way. Or stay on 127.0.0.1, and come from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)",
-            settings::masked(database)
-        );
-    }
-    Ok(())
+/// Whoever reaches a server without a password can read and answer: it does not start.
+fn unlocked(database: &str) -> anyhow::Error {
+    anyhow!(
+        "other machines could reach this server, and it has no owner's password: set one with `memrep password --database {}`; then serve on 127.0.0.1 behind a proxy that has a certificate (memrep serve --behind-proxy --origin https://teach.example.org), since without TLS the password can be read on its way. Or stay on 127.0.0.1, and come from elsewhere by an SSH tunnel (ssh -L 8080:127.0.0.1:8080 HOST)",
+        settings::masked(database)
+    )
 }
 
 /// Resolves at Ctrl+C, and where there are signals at SIGTERM.

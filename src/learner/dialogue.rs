@@ -55,7 +55,7 @@ pub enum Reply<A> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The reply belongs to another kind of question.
-    #[error("this reply does not fit a {question} question: {expected}")]
+    #[error("this reply does not fit a question of {question}: {expected}")]
     WrongKind {
         /// The kind of the question.
         question: &'static str,

@@ -42,6 +42,15 @@ impl<K: Hash + Eq + Clone> Budget<K> {
         Ok(())
     }
 
+    /// Gives back what was taken.
+    pub(crate) fn give_back(&self, who: &K, amount: u32) {
+        if let Some(full) = self.full_at().get_mut(who)
+            && let Some(earlier) = full.checked_sub(self.every * amount)
+        {
+            *full = earlier;
+        }
+    }
+
     fn full_at(&self) -> MutexGuard<'_, HashMap<K, Instant>> {
         self.full_at.lock().unwrap_or_else(PoisonError::into_inner)
     }

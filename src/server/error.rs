@@ -176,6 +176,7 @@ impl WebError {
                 Refusal::BadName | Refusal::UnshownName => "bad_name",
                 Refusal::TooManyPeople => "too_many_people",
                 Refusal::NoPerson => "not_invited",
+                Refusal::Dismissed => "dismissed",
                 Refusal::Said { .. } => "already_answered",
                 Refusal::OwnersAnswer => "owners_answer",
             },
@@ -220,6 +221,7 @@ impl WebError {
                 Refusal::NothingToUndo
                 | Refusal::NoBound
                 | Refusal::NoPerson
+                | Refusal::Dismissed
                 | Refusal::OwnersAnswer => None,
             },
             Self::UploadTooLarge => Some(RECORDINGS),

@@ -189,6 +189,9 @@ impl Form {
         if self.has("answer") {
             return plain_reply(self.text("answer"));
         }
+        if !self.has(universe.key()) && !self.has("label") {
+            return Err(Malformed::new("answer", "choose an answer"));
+        }
         let atom = match universe {
             Universe::Words { alphabet, .. } => {
                 Atom::Word(typed_word(self.text("word"), "word", alphabet)?)

@@ -9,6 +9,8 @@ use axum::http::header::{
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
+use percent_encoding::percent_decode_str;
+
 use super::AppState;
 use super::error::{ApiError, PageError, WebError};
 
@@ -70,6 +72,15 @@ pub(crate) async fn host(State(app): State<AppState>, request: Request, next: Ne
         next.run(request).await
     } else {
         refuse(request.uri().path(), WebError::Foreign)
+    }
+}
+
+/// Refuses addresses that are no text once they are decoded: nothing is there.
+pub(crate) async fn text(request: Request, next: Next) -> Response {
+    let path = request.uri().path();
+    match percent_decode_str(path).decode_utf8() {
+        Ok(_) => next.run(request).await,
+        Err(_) => refuse(path, WebError::NoPage),
     }
 }
 

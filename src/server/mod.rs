@@ -59,7 +59,7 @@ use axum::body::{Body, HttpBody as _};
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
-use axum::middleware::{Next, from_fn_with_state};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
@@ -214,6 +214,7 @@ pub fn app(state: AppState) -> Router {
         .merge(pages.with_state(state.clone()))
         .layer(from_fn_with_state(state.clone(), owner::admit))
         .layer(same_site)
+        .layer(from_fn(guard::text))
         .layer(from_fn_with_state(state.clone(), guard::host))
         .merge(health::routes(state.clone()))
         .layer(from_fn_with_state(state.clone(), guard::headers))

@@ -20,7 +20,7 @@ use super::past::{Choice, PastView, said};
 use super::views::{Bar, Shell, render};
 use crate::session::{
     Agreement, Concept, Decision, Event, MAX_ANSWERS, MAX_NAME, Malformed, Pooling, Position,
-    Session, Terms,
+    Refusal, Session, Terms,
 };
 use crate::store::{InviteKey, SessionId};
 
@@ -339,10 +339,13 @@ async fn new_link(
     let (id, person) = (session_id(&id)?, person(&number)?);
     let view = move |session: &Session| {
         let known = session.panel().people().get(&person);
-        known.is_some_and(|person| person.session.is_none())
+        let known = known.filter(|person| person.session.is_none());
+        known.map(|person| person.left)
     };
-    if !app.teaching.look(id, view).await? {
-        return Err(WebError::NoPage.into());
+    match app.teaching.look(id, view).await? {
+        None => return Err(WebError::NoPage.into()),
+        Some(true) => return Err(WebError::from(Refusal::Dismissed).into()),
+        Some(false) => {}
     }
     let key = app.teaching.new_key(id, person).await?;
     Ok(page(&app, id, None, Some((person, path(&key)))).await?)

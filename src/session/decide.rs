@@ -117,6 +117,9 @@ pub enum Refusal {
         "there are control characters in this name, which cannot be shown: type it anew without them"
     )]
     UnshownName,
+    /// Nobody comes back by a new link.
+    #[error("this person was asked to leave: invite them anew")]
+    Dismissed,
     /// There are enough people.
     #[error("a session has at most {MAX_PEOPLE} people: begin another one of the same task")]
     TooManyPeople,

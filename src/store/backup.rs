@@ -3,8 +3,10 @@
 //! A copy is `SQLite`'s own (`VACUUM INTO`), never one of the file, which without
 //! its write-ahead log is only a part of the database.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, ErrorKind};
+#[cfg(unix)]
+use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -72,9 +74,13 @@ pub fn check_backup(path: &Path) -> Result<Checked, StoreError> {
     }
     let gap = connection
         .prepare(
-            "SELECT sessions.id, count(entries.seq) FROM sessions
-             LEFT JOIN entries ON entries.session = sessions.id GROUP BY sessions.id
-             HAVING count(entries.seq) = 0 OR max(entries.seq) <> count(entries.seq) - 1
+            "SELECT id, 0 FROM sessions
+             WHERE NOT EXISTS (SELECT 1 FROM entries WHERE session = id AND seq = 0)
+             UNION ALL
+             SELECT session, seq + 1 FROM
+                 (SELECT session, seq, lead(seq) OVER (PARTITION BY session ORDER BY seq) AS next
+                  FROM entries)
+             WHERE next <> seq + 1
              LIMIT 1",
         )
         .and_then(|mut statement| {
@@ -82,15 +88,15 @@ pub fn check_backup(path: &Path) -> Result<Checked, StoreError> {
             statement.query_map([], row)?.next().transpose()
         })
         .map_err(unusable)?;
-    if let Some((session, entries)) = gap {
+    if let Some((session, seq)) = gap {
         let session: SessionId = session
             .parse()
             .map_err(|_| fault(path, "a session in it has no proper name"))?;
-        let seq: i64 = entries;
-        return Err(StoreError::Missing {
-            session,
-            seq: seq.cast_unsigned(),
-        });
+        let seq: i64 = seq;
+        return Err(fault(
+            path,
+            format!("entry {seq} of session {session:?} is missing: take another backup"),
+        ));
     }
     let number = |sql: &str| -> Result<i64, StoreError> {
         let first = connection.query_row(sql, [], |row| row.get(0));
@@ -116,6 +122,18 @@ pub fn restore(
     force: bool,
 ) -> Result<(Checked, Option<PathBuf>), StoreError> {
     let checked = check_backup(backup)?;
+    if let Some(message) = schema::no_file(database) {
+        return Err(fault(database, message));
+    }
+    // Behind a link lies the database, with what belongs to it.
+    let behind = fs::canonicalize(database);
+    let database = match &behind {
+        Ok(behind) => behind.as_path(),
+        Err(_) if database.is_symlink() => {
+            return Err(fault(database, "it is a link to nothing: remove it first"));
+        }
+        Err(_) => database,
+    };
     let is_there = fs::metadata(database).is_ok_and(|file| file.len() > 0);
     if is_there && !force {
         return Err(fault(
@@ -285,8 +303,11 @@ impl Partial {
         // killed leaves its file behind.
         let number = getrandom::u64().map_err(|error| fault(to, error.to_string()))?;
         let path = with_suffix(to, &format!("{PARTIAL}{number:016x}"));
-        let new = OpenOptions::new().write(true).create_new(true).open(&path);
-        match new {
+        let mut new = OpenOptions::new();
+        // Nobody else may read what may become unreadable for them.
+        #[cfg(unix)]
+        new.mode(0o600);
+        match new.write(true).create_new(true).open(&path) {
             Ok(_) => Ok(Self { path }),
             Err(error) => Err(fault(
                 &path,
@@ -300,15 +321,18 @@ impl Partial {
     fn fill_from(&self, database: &Path) -> Result<(), StoreError> {
         let source = open(database)?;
         let cannot = |error: io::Error| self.fault(&error);
-        // Whoever may not read the sessions may not read their copy.
-        let rights = fs::metadata(database).map_err(cannot)?.permissions();
-        fs::set_permissions(&self.path, rights).map_err(cannot)?;
         let Some(name) = self.path.to_str() else {
             return Err(fault(&self.path, "its name is no text: choose another"));
         };
         source.execute("VACUUM INTO ?1", [name])?;
         let file = OpenOptions::new().write(true).open(&self.path);
-        file.and_then(|file| file.sync_all()).map_err(cannot)
+        let rights = fs::metadata(database).map(|file| owned(file.permissions()));
+        file.and_then(|file| {
+            // Whoever may not read the sessions may not read their copy.
+            file.set_permissions(rights?)?;
+            file.sync_all()
+        })
+        .map_err(cannot)
     }
 
     fn become_file(self, to: &Path) -> Result<(), StoreError> {
@@ -334,6 +358,20 @@ impl Drop for Partial {
         // Gone already where it became a file.
         let _ = fs::remove_file(&self.path);
     }
+}
+
+/// The same rights, with which the owner can also write: a backup may be one that
+/// nobody was to change, and is put back to go on.
+#[cfg(unix)]
+fn owned(mut rights: Permissions) -> Permissions {
+    rights.set_mode(rights.mode() | 0o600);
+    rights
+}
+
+#[cfg(not(unix))]
+fn owned(mut rights: Permissions) -> Permissions {
+    rights.set_readonly(false);
+    rights
 }
 
 fn fault(path: &Path, message: impl Into<String>) -> StoreError {

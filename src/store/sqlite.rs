@@ -1,6 +1,6 @@
 //! The store in one `SQLite` file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -23,6 +23,34 @@ const LOG_LIMIT: i64 = 16 << 20;
 pub struct Sqlite {
     connection: Mutex<Connection>,
     together: Together,
+    place: Option<Place>,
+}
+
+/// Which file a database was opened as.
+struct Place {
+    path: PathBuf,
+    file: (u64, u64),
+}
+
+impl Place {
+    fn of(path: &Path) -> Option<Self> {
+        let path = path.canonicalize().ok()?;
+        let file = file_at(&path)?;
+        Some(Self { path, file })
+    }
+}
+
+/// What tells the file at a path from all others, where the system has such numbers.
+#[cfg(unix)]
+fn file_at(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt as _;
+    let file = std::fs::metadata(path).ok()?;
+    Some((file.dev(), file.ino()))
+}
+
+#[cfg(not(unix))]
+fn file_at(_: &Path) -> Option<(u64, u64)> {
+    None
 }
 
 impl Sqlite {
@@ -73,7 +101,9 @@ impl Sqlite {
         if let Some(version) = earlier_version(&connection).map_err(unusable)? {
             backup::before_upgrade(&connection, path, version)?;
         }
-        prepare(connection).map_err(unusable)
+        let mut store = prepare(connection).map_err(unusable)?;
+        store.place = Place::of(path);
+        Ok(store)
     }
 
     /// A store that ends with the process.
@@ -99,6 +129,23 @@ impl Sqlite {
         Ok(())
     }
 
+    /// Whether what is kept is there at the next start: a file that was removed, or has
+    /// another in its place, would take everything without a word, and be gone.
+    fn in_place(&self) -> Result<(), StoreError> {
+        let Some(place) = &self.place else {
+            return Ok(());
+        };
+        if file_at(&place.path) == Some(place.file) {
+            return Ok(());
+        }
+        Err(StoreError::Away {
+            message: format!(
+                "{} was removed or replaced while memrep had it open: put it back, or start memrep again",
+                place.path.display()
+            ),
+        })
+    }
+
     /// A panic elsewhere cannot have left a transaction open: they roll back.
     pub(super) fn connection(&self) -> MutexGuard<'_, Connection> {
         self.connection
@@ -117,11 +164,13 @@ fn prepare(mut connection: Connection) -> rusqlite::Result<Sqlite> {
     Ok(Sqlite {
         connection: Mutex::new(connection),
         together: Together::default(),
+        place: None,
     })
 }
 
 impl Store for Sqlite {
     fn append_all(&self, session: &SessionId, seq: u64, bodies: &[&str]) -> Result<(), StoreError> {
+        self.in_place()?;
         let connect = || self.connection();
         self.together.append(*session, seq, bodies, connect)
     }
@@ -173,6 +222,7 @@ impl Store for Sqlite {
         upload: &UploadId,
         files: Option<&mut dyn Iterator<Item = NewFile<'_>>>,
     ) -> Result<(), StoreError> {
+        self.in_place()?;
         let mut connection = self.connection();
         let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
         match files {
@@ -203,6 +253,7 @@ impl Store for Sqlite {
     }
 
     fn invite(&self, key: &InviteKey, session: &SessionId, person: u32) -> Result<(), StoreError> {
+        self.in_place()?;
         self.connection()
             .prepare_cached(
                 "INSERT INTO invites (session, person, digest) VALUES (?1, ?2, ?3)
@@ -245,6 +296,7 @@ impl Store for Sqlite {
     }
 
     fn probe(&self) -> Result<(), StoreError> {
+        self.in_place()?;
         self.connection()
             .prepare_cached("SELECT id FROM sessions LIMIT 1")?
             .exists([])?;

@@ -79,10 +79,13 @@ impl<'a> Fields<'a> {
         self.map.keys().filter(foreign).map(|key| {
             Malformed::new(
                 self.path_of(key),
-                format!(
-                    "`{key}` is an unknown key: the known ones are {}",
-                    known.join(", ")
-                ),
+                match known {
+                    [] => format!("`{key}` is an unknown key: there is nothing to give here"),
+                    _ => format!(
+                        "`{key}` is an unknown key: the known ones are {}",
+                        known.join(", ")
+                    ),
+                },
             )
         })
     }
@@ -148,28 +151,10 @@ impl<'a> Fields<'a> {
         most: usize,
         allowed: impl Fn(char) -> bool,
     ) -> Result<Option<String>, Malformed> {
-        let Some(value) = self.get(key) else {
-            return Ok(None);
-        };
-        let path = self.path_of(key);
-        let Some(text) = value.as_str() else {
-            return Err(Malformed::new(path, "give a string"));
-        };
-        let text = text.trim();
-        let length = text.chars().count();
-        if length > most {
-            return Err(Malformed::new(
-                path,
-                format!("this has {length} characters: at most {most} are possible"),
-            ));
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => string(value, &self.path_of(key), most, allowed),
         }
-        if text.chars().any(|c| !allowed(c) && is_disruptive(c)) {
-            return Err(Malformed::new(
-                path,
-                "this has a control character: leave it out",
-            ));
-        }
-        Ok((!text.is_empty()).then(|| text.to_owned()))
     }
 
     /// The whole number under `key`, from `least` to `most`.
@@ -199,6 +184,41 @@ impl<'a> Fields<'a> {
             format!("{}.{key}", self.path)
         }
     }
+}
+
+/// The one-line text that stands at this path, trimmed; `None` if it is blank.
+///
+/// # Errors
+///
+/// As for [`Fields::text`].
+pub(super) fn line(value: &Value, path: &str, most: usize) -> Result<Option<String>, Malformed> {
+    string(value, path, most, |_| false)
+}
+
+fn string(
+    value: &Value,
+    path: &str,
+    most: usize,
+    allowed: impl Fn(char) -> bool,
+) -> Result<Option<String>, Malformed> {
+    let Some(text) = value.as_str() else {
+        return Err(Malformed::new(path, "give a string"));
+    };
+    let text = text.trim();
+    let length = text.chars().count();
+    if length > most {
+        return Err(Malformed::new(
+            path,
+            format!("this has {length} characters: at most {most} are possible"),
+        ));
+    }
+    if text.chars().any(|c| !allowed(c) && is_disruptive(c)) {
+        return Err(Malformed::new(
+            path,
+            "this has a control character: leave it out",
+        ));
+    }
+    Ok((!text.is_empty()).then(|| text.to_owned()))
 }
 
 /// Characters that would break a line or turn the direction of what follows.

@@ -5,7 +5,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::MAX_SYMBOLS;
-use super::reader::{Faults, Fields, Malformed};
+use super::reader::{self, Faults, Fields, Malformed};
+
+/// The most characters of a name.
+const LONGEST_NAME: usize = 60;
 
 /// A symbol as people see it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -139,8 +142,10 @@ pub(super) fn read(
 }
 
 fn read_symbol(value: &Value, path: &str, faults: &mut Faults) -> Option<SymbolText> {
-    if let Some(name) = value.as_str() {
-        return Some(SymbolText::named(name));
+    if value.is_string() {
+        // A log has it as the name of an object, and is to be read again.
+        let name = faults.keep(reader::line(value, path, LONGEST_NAME))?;
+        return Some(SymbolText::named(name.unwrap_or_default()));
     }
     let fields = faults.keep(Fields::of(value, path).map_err(|_| {
         Malformed::new(
@@ -151,7 +156,7 @@ fn read_symbol(value: &Value, path: &str, faults: &mut Faults) -> Option<SymbolT
     faults
         .0
         .extend(fields.unknown(&["name", "word", "colour", "letter"]));
-    let Some(name) = faults.keep(fields.text("name", 60))? else {
+    let Some(name) = faults.keep(fields.text("name", LONGEST_NAME))? else {
         faults.0.push(Malformed::new(
             path,
             "this symbol has no `name`: give it one",

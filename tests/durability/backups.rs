@@ -1,6 +1,7 @@
 //! Backups are whole, and what was backed up can be put back.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::{Duration, Instant, SystemTime};
 
 use memrep::store::{SessionId, Sqlite, Store, back_up, check_backup};
@@ -187,7 +188,7 @@ fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
         ("changed.db", "damaged"),
         ("notes.txt", "not an SQLite file"),
         ("empty.db", "empty"),
-        ("gap.db", "is missing"),
+        ("gap.db", "entry 7 of session"),
         ("nowhere.db", "check that it is there"),
         ("", "it is a folder"),
     ] {
@@ -218,6 +219,29 @@ fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
         assert!(said.contains(part), "{said}");
         assert!(!copies.exists(), "a folder is made for a backup alone");
     }
+    #[cfg(unix)]
+    {
+        let made = Command::new("mkfifo").arg(at("pipe.db")).status().unwrap();
+        assert!(made.success());
+        std::os::unix::fs::symlink(at("nowhere.db"), at("link.db")).unwrap();
+        for (name, part) in [
+            ("pipe.db", "no ordinary file"),
+            ("link.db", "link to nothing"),
+        ] {
+            let good = at("good.db");
+            let target = at(name);
+            let arguments = [
+                "restore",
+                text(&good),
+                "--force",
+                "--database",
+                text(&target),
+            ];
+            let said = refused(&mut memrep(&arguments));
+            assert!(said.contains(part), "{name}: {said}");
+            assert!(!target.is_file(), "{name}");
+        }
+    }
     let (a, good) = (at("a.db"), at("good.db"));
     let said = refused(&mut memrep(&[
         "backup",
@@ -232,6 +256,36 @@ fn what_is_no_sound_backup_is_refused_and_changes_nothing() {
             .iter()
             .all(|file| !text(file).contains("partial"))
     );
+}
+
+#[test]
+#[cfg(unix)]
+fn a_backup_that_nobody_may_change_is_put_back_to_go_on_also_behind_a_link() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let session = SessionId::random().unwrap();
+    let store = Sqlite::open(&at("a.db")).unwrap();
+    store.append(&session, 0, "kept").unwrap();
+    back_up(&at("a.db"), &at("b.db")).unwrap();
+    store.append(&session, 1, "later").unwrap();
+    drop(store);
+    let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    std::fs::set_permissions(at("b.db"), std::fs::Permissions::from_mode(0o440)).unwrap();
+    symlink(at("a.db"), at("link.db")).unwrap();
+    let (backup, link) = (at("b.db"), at("link.db"));
+    done(&mut memrep(&[
+        "restore",
+        text(&backup),
+        "--force",
+        "--database",
+        text(&link),
+    ]));
+    assert!(link.is_symlink(), "what it leads to is replaced");
+    assert_eq!((mode(&at("a.db")), mode(&at("b.db"))), (0o640, 0o440));
+    let store = Sqlite::open(&at("a.db")).unwrap();
+    assert_eq!(store.read(&session).unwrap().len(), 1);
+    store.append(&session, 1, "anew").unwrap();
 }
 
 /// A log that is left of a database that is gone must not become a part of another.

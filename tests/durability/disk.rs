@@ -34,6 +34,40 @@ fn an_append_for_which_there_is_no_room_changes_nothing() {
     assert_eq!(store.read(&session).unwrap().len() as u64, kept + 1);
 }
 
+/// A file without a name, or under another one, takes what is written and is not there
+/// at the next start.
+#[test]
+#[cfg(unix)]
+fn a_database_that_is_taken_away_takes_no_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, away) = (folder.path().join("a.db"), folder.path().join("away.db"));
+    let server = Server::at(&path);
+    let created = server.json("POST", "/api/v1/sessions", &json!({"task": "tomita:4"}));
+    let session = format!("/api/v1/sessions/{}", created["id"].as_str().unwrap());
+    let question = server.json("GET", &format!("{session}/question"), &Value::Null);
+    let said = answer(&question).unwrap();
+    std::fs::rename(&path, &away).unwrap();
+    for other in [None, Some("of something else")] {
+        if let Some(other) = other {
+            std::fs::write(&path, other).unwrap();
+        }
+        let refused = server.ask("POST", &format!("{session}/answers"), &said);
+        assert_eq!(refused.status, 503, "{}", refused.body);
+        let message = refused.json()["error"]["message"].to_string();
+        assert!(message.contains("reached"), "{message}");
+        assert_eq!(server.ask("GET", "/healthz", &Value::Null).status, 503);
+    }
+    std::fs::rename(&away, &path).unwrap();
+    let next = server.json("POST", &format!("{session}/answers"), &said);
+    assert_ne!(next["number"], question["number"], "{next}");
+    drop(server);
+    let again = Server::at(&path);
+    let open = again.json("GET", &format!("{session}/question"), &Value::Null);
+    assert_eq!(open, next);
+    drop(again);
+    assert_sound(&path);
+}
+
 /// A file system of its own that is small; gone when this goes.
 struct SmallDisk<'a>(&'a Path);
 

@@ -194,6 +194,10 @@ async fn sessions_that_cannot_be_are_refused() {
         (json!({"task": {"symbols": ["a", ""]}}), "task.symbols[1]"),
         (json!({"task": {"symbols": ["a b"]}}), "task.symbols[0]"),
         (
+            json!({"task": {"symbols": ["x".repeat(61)]}}),
+            "task.symbols[0]",
+        ),
+        (
             json!({"task": {"symbols": ["'; DROP TABLE sessions; --"]}}),
             "task.symbols[0]",
         ),
@@ -410,6 +414,12 @@ async fn addresses_that_lead_nowhere_say_so() {
         "",
     );
     check(&site.get("/api/v1/nothing").await, 404, "not_found", "");
+    for no_text in ["/api/v1/sessions/%ff", "/api/v1/%E0%80"] {
+        check(&site.get(no_text).await, 404, "not_found", "");
+    }
+    let page = site.get("/sessions/%ff").await;
+    assert_eq!(page.status, StatusCode::NOT_FOUND);
+    assert!(page.text.contains("<html"), "{}", page.text);
     check(&site.get("/api/v2/sessions").await, 404, "not_found", "");
     check(
         &site.get(&format!("{nobody}/answers")).await,

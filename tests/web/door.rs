@@ -271,6 +271,27 @@ async fn passwords_cannot_be_tried_for_long() {
     assert_eq!(other.status, StatusCode::SEE_OTHER);
 }
 
+/// A script that signs in for every run is not somebody who guesses.
+#[tokio::test]
+async fn only_wrong_passwords_are_counted_as_tries() {
+    let (site, _) = locked();
+    let at = "/api/v1/sign-in";
+    for number in 0..15 {
+        let odd = site.post(at, json!({"passwort": "x"})).await;
+        assert_eq!(odd.status, StatusCode::UNPROCESSABLE_ENTITY, "{number}");
+    }
+    for number in 0..12 {
+        let right = site.post(at, json!({"password": PASSWORD})).await;
+        assert_eq!(right.status, StatusCode::CREATED, "{number}");
+    }
+    for number in 0..10 {
+        let wrong = site.post(at, json!({"password": "guess"})).await;
+        assert_eq!(wrong.status, StatusCode::UNAUTHORIZED, "{number}");
+    }
+    let late = site.post(at, json!({"password": PASSWORD})).await;
+    assert_eq!(late.status, StatusCode::TOO_MANY_REQUESTS);
+}
+
 #[tokio::test]
 async fn under_an_address_with_tls_cookies_are_for_that_host_alone() {
     let origin = format!("https://{TLS}").parse().unwrap();

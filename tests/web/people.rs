@@ -326,6 +326,10 @@ async fn a_link_ends() {
     assert_eq!(ended.location(), owner);
     assert_eq!(site.get(&path).await.status, StatusCode::NOT_FOUND);
     assert_eq!(site.get(&now).await.status, StatusCode::NOT_FOUND);
+    // As from a page that was open before.
+    let back = site.form(&format!("{owner}/1/link"), &[]).await;
+    assert_eq!(back.status, StatusCode::CONFLICT, "{}", back.text);
+    assert!(back.text.contains("invite them anew"), "{}", back.text);
     let other = site.get(&people[1]).await;
     assert_eq!(other.status, StatusCode::OK, "the others go on");
     for nobody in ["/answer/zz", "/answer/00000000000000000000000000000000"] {

@@ -192,6 +192,7 @@ fn what_it_cannot_do_it_says_with_the_way_out() {
         let unlocked = refused(command(&other, &arguments));
         assert!(unlocked.contains("no owner's password"), "{unlocked}");
     }
+    assert!(!other.exists(), "nor does one that nobody may reach");
     let text = folder.path().join("notes.txt");
     std::fs::write(
         &text,
@@ -251,6 +252,28 @@ fn a_password_is_piped_in_and_opens_the_way_for_other_machines() {
         "{}",
         String::from_utf8_lossy(&set.stderr)
     );
+    #[cfg(target_os = "linux")]
+    {
+        // It is set, also where that cannot be said.
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let mut unheard = Command::new(env!("CARGO_BIN_EXE_memrep"))
+            .args(["password", "--database"])
+            .arg(&database)
+            .stdin(Stdio::piped())
+            .stdout(full.unwrap())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut input = unheard.stdin.take().unwrap();
+        input.write_all(b"correct horse battery\n").unwrap();
+        drop(input);
+        let unheard = unheard.wait_with_output().unwrap();
+        let told = String::from_utf8(unheard.stderr).unwrap();
+        assert!(
+            unheard.status.success() && told.contains("it is done, but"),
+            "{told}"
+        );
+    }
     let origin = ["--origin", "https://teach.example.org"];
     let server = Server::start_with(&database, &origin);
     let (status, _) = server.ask("GET", "/api/v1/sessions", &Value::Null);

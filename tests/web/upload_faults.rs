@@ -226,6 +226,7 @@ async fn faulty_tasks_are_named() {
             "nothing to learn",
         ),
         (plain().text("colour", "red"), "colour", "no part `colour`"),
+        (plain().text("task", "{}"), "task", "several parts `task`"),
     ])
     .await;
 }

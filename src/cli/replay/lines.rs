@@ -53,10 +53,15 @@ pub(super) fn read(text: &str) -> anyhow::Result<Vec<Line<'_>>> {
                 "line {number}: this is entry {seq}, and entry {expected} comes next: an entry is missing, doubled or in another place"
             );
         }
-        let event: Result<Event, _> = serde_json::from_value(body);
-        event.map_err(|error| {
+        let event: Result<Event, _> = serde_json::from_value(body.clone());
+        let event = event.map_err(|error| {
             anyhow!("line {number}: entry {expected} is none of a session's log: {error}")
         })?;
+        if let Some(key) = unread(&body, &serde_json::to_value(&event)?) {
+            return Err(anyhow!(
+                "line {number}: entry {expected} has `{key}`, which no entry of its kind has"
+            ));
+        }
         lines.push(Line { number, text: line });
     }
     ensure!(
@@ -64,6 +69,13 @@ pub(super) fn read(text: &str) -> anyhow::Result<Vec<Line<'_>>> {
         "the log is empty: give what `GET /api/v1/sessions/{{id}}/log` gives"
     );
     Ok(lines)
+}
+
+/// A key of an entry that is not read: somebody else wrote it.
+fn unread<'a>(body: &'a Value, read: &Value) -> Option<&'a String> {
+    let mut said = body.as_object()?.iter();
+    let odd = said.find(|(key, value)| !value.is_null() && read.get(key.as_str()).is_none());
+    odd.map(|(key, _)| key)
 }
 
 /// The entry's number, if it has one, and what it says.

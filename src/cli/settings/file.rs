@@ -60,7 +60,7 @@ pub(super) fn read(
             bail!(
                 "{}: `{name}` is {wanted}{or_more}, not {}",
                 at(value.span().start),
-                described(value.get_ref())
+                described(odd(value, *kind, *is_list))
             );
         };
         all.push(Given {
@@ -79,6 +79,18 @@ fn texts(value: &Spanned<DeValue<'_>>, kind: Kind, is_list: bool) -> Option<Vec<
             each.collect()
         }
         value => Some(vec![text(value, kind)?]),
+    }
+}
+
+/// What is wrong about a value: one of several, or all of it.
+fn odd<'a, 'i>(value: &'a Spanned<DeValue<'i>>, kind: Kind, is_list: bool) -> &'a DeValue<'i> {
+    match value.get_ref() {
+        DeValue::Array(values) if is_list => {
+            let values = values.iter().map(Spanned::get_ref);
+            let mut odd = values.filter(|value| text(value, kind).is_none());
+            odd.next().unwrap_or(value.get_ref())
+        }
+        value => value,
     }
 }
 

@@ -8,19 +8,22 @@
 //! [`serve::Args`]: super::serve::Args
 
 mod file;
+mod secrets;
 
 use std::any::TypeId;
 use std::ffi::OsString;
 use std::fmt;
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use clap::builder::Command;
-use clap::error::ContextValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args};
 
 use self::file::Given;
+pub(super) use self::secrets::{masked, without_passwords};
 use super::files;
 
 /// The file that is read where none is named.
@@ -106,7 +109,7 @@ fn resolve_in<A: Args>(flags: &ArgMatches, around: &Around<'_>) -> anyhow::Resul
     let mut held = Vec::new();
     let mut line = Vec::new();
     for option in options {
-        let setting = held_by(option, flags, &said, around)?;
+        let setting = held_by(&command, option, flags, &said, around)?;
         if setting.source != Source::Default {
             let said = as_flags(&setting)?;
             check(&command, &said, &setting.source)?;
@@ -170,7 +173,7 @@ fn read_file(
         _ => (around.variable)(&variable(NAMES_FILE)).map(PathBuf::from),
     };
     let path = named.clone().unwrap_or_else(|| USUAL_FILE.into());
-    let bytes = match std::fs::read(around.folder.join(&path)) {
+    let bytes = match read_most(&around.folder.join(&path)) {
         Ok(bytes) => bytes,
         Err(error) if named.is_none() && error.kind() == std::io::ErrorKind::NotFound => {
             return Ok(Vec::new());
@@ -178,7 +181,7 @@ fn read_file(
         Err(error) => {
             return Err(error).context(format!(
                 "{}: cannot read the settings in this file: name another with --config or {}",
-                path.display(),
+                masked(&path.display().to_string()),
                 variable(NAMES_FILE)
             ));
         }
@@ -192,12 +195,24 @@ fn read_file(
     file::read(&path, &text, &known)
 }
 
+/// What is in a file of settings, which is never large.
+fn read_most(path: &Path) -> std::io::Result<Vec<u8>> {
+    const MOST: u64 = 1 << 20;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST {
+        return Err(std::io::Error::other("it has more than 1 MiB"));
+    }
+    Ok(bytes)
+}
+
 /// Whether it may be said more than once.
 fn is_list(option: &Arg) -> bool {
     matches!(option.get_action(), ArgAction::Append)
 }
 
 fn held_by(
+    command: &Command,
     option: &Arg,
     flags: &ArgMatches,
     said: &[Given],
@@ -227,17 +242,19 @@ fn held_by(
         let Ok(text) = value.into_string() else {
             bail!("{name}: this is no text: give it in UTF-8, or unset it");
         };
-        // What is set for other programs is often set to nothing.
-        if text.is_empty() && ALSO.iter().any(|(_, also)| *also == name) {
+        // None of those that may be said several times has a blank in it.
+        let texts = match kind(option) {
+            _ if is_list(option) => text.split_whitespace().map(String::from).collect(),
+            Kind::Switch => vec![switch(&text).map_or(text, |on| on.to_string())],
+            _ => vec![text],
+        };
+        let given = held(texts, Source::Environment(name.clone()));
+        // What is meant for other programs need not be a setting of this one.
+        let is_others = ALSO.iter().any(|(_, also)| *also == name);
+        if is_others && check(command, &as_flags(&given)?, &given.source).is_err() {
             continue;
         }
-        // None of those that may be said several times has a blank in it.
-        let texts = if is_list(option) {
-            text.split_whitespace().map(String::from).collect()
-        } else {
-            vec![text]
-        };
-        return Ok(held(texts, Source::Environment(name)));
+        return Ok(given);
     }
     if let Some(given) = said.iter().find(|given| given.key == key) {
         return Ok(held(given.texts.clone(), given.source.clone()));
@@ -254,11 +271,20 @@ fn as_flags(held: &Held) -> anyhow::Result<Vec<String>> {
         let texts = held.texts.iter();
         return Ok(texts.map(|text| format!("{flag}={text}")).collect());
     }
-    match held.texts.first().map(String::as_str) {
-        Some("true" | "1" | "yes" | "on") => Ok(vec![flag]),
-        Some("false" | "0" | "no" | "off") | None => Ok(Vec::new()),
-        Some(_) => bail!("{}: give true or false", held.source),
+    match held.texts.first().map(|text| switch(text)) {
+        Some(Some(true)) => Ok(vec![flag]),
+        Some(Some(false)) | None => Ok(Vec::new()),
+        Some(None) => bail!("{}: give true or false", held.source),
     }
+}
+
+/// What a text says of a switch.
+fn switch(text: &str) -> Option<bool> {
+    let is_one_of = |words: [&str; 4]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
+    if is_one_of(["true", "yes", "on", "1"]) {
+        return Some(true);
+    }
+    is_one_of(["false", "no", "off", "0"]).then_some(false)
 }
 
 /// Says what is wrong with a setting where it was said.
@@ -276,49 +302,6 @@ fn check(command: &Command, said: &[String], source: &Source) -> anyhow::Result<
     let lines = text.lines().map(str::trim);
     let message: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
     bail!("{source}: {}", message.join(" "))
-}
-
-/// What an error says, without the passwords in what was given; nothing where there are
-/// none.
-pub(super) fn without_passwords(error: &clap::Error) -> Option<String> {
-    let given = error.context().filter_map(|(_, value)| match value {
-        ContextValue::String(text) => Some((text, masked(text))),
-        _ => None,
-    });
-    let mut told = None;
-    for (text, masked) in given.filter(|(text, masked)| *text != masked) {
-        let so_far = told.unwrap_or_else(|| error.to_string());
-        told = Some(so_far.replace(text, &masked));
-    }
-    told
-}
-
-/// The text without the passwords in it: those of addresses such as
-/// `postgres://user:password@host/name`, and of `password=…`.
-pub(super) fn masked(text: &str) -> String {
-    const HIDDEN: &str = "***";
-    let mut shown = text.to_owned();
-    if let Some(scheme) = shown.find("://") {
-        let user = scheme + "://".len();
-        // A password may have any character in it, even those that end it elsewhere.
-        if let Some(end) = shown.rfind('@').filter(|end| *end > user)
-            && let Some(colon) = shown[user..end].find(':')
-        {
-            shown.replace_range(user + colon + 1..end, HIDDEN);
-        }
-    }
-    let mut from = 0;
-    while let Some(found) = shown[from..].to_ascii_lowercase().find("password=") {
-        let start = from + found + "password=".len();
-        let rest = &shown[start..];
-        let end = match rest.strip_prefix('\'') {
-            Some(quoted) => quoted.find('\'').map(|end| end + 2),
-            None => rest.find(|c: char| c == '&' || c.is_whitespace()),
-        };
-        shown.replace_range(start..start + end.unwrap_or(rest.len()), HIDDEN);
-        from = start + HIDDEN.len();
-    }
-    shown
 }
 
 /// A setting's text as it may be shown: passwords are not.

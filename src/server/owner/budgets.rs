@@ -96,8 +96,10 @@ impl Budgets {
         })
     }
 
-    /// The owner came in from there.
+    /// The owner came in from there, and has the try back: a script may come in as
+    /// often as it likes, and guesses beside it are not given back.
     pub(super) fn welcome(&self, from: Whence) {
+        self.tries.give_back(&from.address, 1);
         let mut known = self.known();
         if known.len() >= MOST_KNOWN {
             known.clear();

@@ -8,6 +8,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::{Value, json};
 
 use super::budgets::Whence;
@@ -54,18 +55,15 @@ fn page(to: String, fault: Option<String>) -> Response {
 
 /// The address of the page that leads on to `back`.
 pub(super) fn address(back: &str) -> String {
-    use std::fmt::Write as _;
-    let mut address = "/sign-in?to=".to_owned();
-    for byte in back.bytes() {
-        if byte.is_ascii_alphanumeric() || matches!(byte, b'/' | b'-' | b'.' | b'_') {
-            address.push(char::from(byte));
-        } else {
-            // Writing to a string never fails.
-            let _ = write!(address, "%{byte:02X}");
-        }
-    }
-    address
+    format!("/sign-in?to={}", utf8_percent_encode(back, PLAIN_PATH))
 }
+
+/// What stands for something else in an address: all but what paths are made of.
+const PLAIN_PATH: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'/')
+    .remove(b'-')
+    .remove(b'.')
+    .remove(b'_');
 
 /// The path to go on to, if it is one of this site's pages: never another site's, which
 /// browsers also see in `//host` and `/\host`.
@@ -104,6 +102,7 @@ async fn enter(
     from: Whence,
     given: String,
 ) -> Result<(VisitKey, Option<HeaderValue>), WebError> {
+    app.door.budgets.spend_try(from)?;
     let kept = super::ask(app, |store| store.visits().password()).await?;
     let kept = kept.ok_or(WebError::NoPassword)?;
     let hash = kept.clone();
@@ -141,7 +140,6 @@ async fn enter(
 
 async fn sign_in(State(app): State<AppState>, request: Request) -> Result<Response, PageError> {
     let from = app.door.budgets.whence(&request);
-    app.door.budgets.spend_try(from)?;
     let headers = request.headers().clone();
     let fields = FormBody::<Vec<(String, String)>>::from_request(request, &()).await;
     let form = read_form(fields)?;
@@ -189,7 +187,6 @@ async fn sign_out(State(app): State<AppState>, headers: HeaderMap) -> Result<Res
 
 async fn give_key(State(app): State<AppState>, request: Request) -> Result<Response, ApiError> {
     let from = app.door.budgets.whence(&request);
-    app.door.budgets.spend_try(from)?;
     let headers = request.headers().clone();
     let body: Body = Bytes::from_request(request, &()).await;
     let body = read_body(body)?;

@@ -153,6 +153,10 @@ impl<F: FnMut(&Form) -> Result<Alphabet, WebError>> Taking<F> {
         name: String,
         most: usize,
     ) -> Result<(), Stopped> {
+        if self.form.iter().any(|(earlier, _)| *earlier == name) {
+            let message = format!("there are several parts `{name}`: send one");
+            return Err(Malformed::new(name, message).into());
+        }
         let mut bytes = Vec::new();
         while let Some(piece) = part.chunk().await? {
             self.length += piece.len();

@@ -15,7 +15,12 @@ const VIDEOS: &[&str] = &["mp4", "webm"];
 
 /// What there is to see of a recording. Paths are relative to the upload.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[serde(
+    tag = "kind",
+    rename_all = "lowercase",
+    deny_unknown_fields,
+    expecting = "an object with its `kind`: frames, animation or video"
+)]
 pub enum Media {
     /// Pictures that are shown one after the other: PNG, JPEG or WebP.
     Frames {
