@@ -34,10 +34,7 @@ pub(super) fn named(flags: &ArgMatches) -> anyhow::Result<String> {
 ///
 /// If it names none; its password is not told.
 pub(super) fn name(text: &str) -> Result<String, String> {
-    match fault(text) {
-        None => Ok(text.to_owned()),
-        Some(fault) => Err(fault),
-    }
+    fault(text).map_or_else(|| Ok(text.to_owned()), Err)
 }
 
 fn fault(text: &str) -> Option<String> {
@@ -72,7 +69,7 @@ fn fault(text: &str) -> Option<String> {
         let rest = text.strip_prefix(scheme).unwrap_or_default();
         rest.starts_with(':') || rest.starts_with("//")
     });
-    // As in `user:password@host`, and not as in `C:\\`.
+    // As in `user:password@host`, and not as in `C:\`.
     let login = text
         .split_once(':')
         .is_some_and(|(_, rest)| rest.contains('@') && !rest.starts_with('\\'));
@@ -90,19 +87,11 @@ fn address_fault(text: &str) -> Option<String> {
     }
     let rest = rest.split_once('@').map_or(rest, |(_, rest)| rest);
     let hosts = rest.split(['/', '?']).next()?;
-    let port_of = |host: &str| {
-        Some(
-            host.rsplit_once(':')
-                .filter(|_| !host.ends_with(']'))?
-                .1
-                .parse::<u16>(),
-        )
+    let is_wrong = |host: &str| {
+        let port = host.rsplit_once(':').filter(|_| !host.ends_with(']'));
+        port.is_some_and(|(_, port)| port.parse::<u16>().is_err())
     };
-    let wrong = hosts
-        .split(',')
-        .filter_map(port_of)
-        .any(|port| port.is_err());
-    wrong.then(|| {
+    hosts.split(',').any(is_wrong).then(|| {
         "after the host's `:` stands its port, from 1 to 65535: a user and a password end in `@`"
             .to_owned()
     })
