@@ -33,6 +33,10 @@ const GRACE: Duration = Duration::from_secs(10);
 /// How long a script waits: it would only ask again.
 const PATIENCE: Duration = Duration::from_secs(30);
 
+/// So many sessions for each core think at once: what takes long then does not hold up
+/// what takes a moment, and the system shares the cores out.
+const TURNS: usize = 2;
+
 /// All sessions of a store, and the pool on which they think.
 #[derive(Clone)]
 pub(crate) struct Teaching {
@@ -53,8 +57,8 @@ pub(crate) struct Teaching {
 }
 
 impl Teaching {
-    /// Sessions of `store`, of which at most `width` think at the same time; each of
-    /// several people has a question for as long as `lease`.
+    /// Sessions of `store` on a machine with `width` cores; each of several people has a
+    /// question for as long as `lease`.
     pub(crate) fn new(
         store: Arc<dyn Store>,
         width: usize,
@@ -72,7 +76,7 @@ impl Teaching {
                 metrics,
             }),
             desks: Arc::default(),
-            permits: Arc::new(Semaphore::new(width.max(1))),
+            permits: Arc::new(Semaphore::new(TURNS * width.max(1))),
             folds: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
