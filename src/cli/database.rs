@@ -76,7 +76,7 @@ fn fault(text: &str) -> Option<String> {
     (slip || login).then(|| format!("this looks like an address and is none: {WAYS}"))
 }
 
-/// What PostgreSQL's client would read otherwise than it was meant.
+/// What `PostgreSQL`'s client would read otherwise than it was meant.
 fn address_fault(text: &str) -> Option<String> {
     let (_, rest) = text.split_once("://")?;
     if rest.matches('@').count() > 1 {
