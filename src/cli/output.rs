@@ -29,6 +29,7 @@ pub(crate) fn line(text: impl Display) -> anyhow::Result<()> {
 
 /// Prints a line about what is done: it stays done where that cannot be printed, which
 /// is told instead.
+#[cfg(feature = "server")]
 pub(crate) fn done(text: impl Display) {
     if let Err(error) = line(text) {
         note(format_args!("it is done, but {error:#}"));

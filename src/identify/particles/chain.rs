@@ -117,7 +117,7 @@ impl Mover {
             let allowed = bonus + standing.prior - machine.standing.prior;
             let gained = standing.likelihood - machine.standing.likelihood;
             other.standing = standing;
-            rng.random::<f64>().ln() < allowed + power * gained
+            is_drawn(allowed + power * gained, rng)
         });
         if accepted {
             std::mem::swap(machine, &mut other);
@@ -140,6 +140,13 @@ impl Mover {
         }
         standing
     }
+}
+
+/// Whether what has a chance of this logarithm happens; where that is not below zero,
+/// it does.
+pub(super) fn is_drawn(log_chance: f64, rng: &mut ChaCha8Rng) -> bool {
+    let drawn = rng.random::<f64>();
+    log_chance >= 0.0 || drawn.ln() < log_chance
 }
 
 /// Whether every state can be reached from the first.

@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use automata::{Alphabet, Word};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use self::chain::{Ground, Machine, Mover};
+use self::chain::{Ground, Machine, Mover, is_drawn};
 use self::guide::Guide;
 use self::places::Places;
 use self::script::Script;
@@ -256,7 +256,7 @@ fn travel(
         for level in (leg % 2..LEVELS.len() - 1).step_by(2) {
             let gain = ladder[level + 1].standing.likelihood - ladder[level].standing.likelihood;
             let chance = (LEVELS[level] - LEVELS[level + 1]) * gain;
-            if rng.random::<f64>().ln() < chance {
+            if is_drawn(chance, rng) {
                 ladder.swap(level, level + 1);
             }
         }

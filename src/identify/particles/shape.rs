@@ -1,6 +1,8 @@
 //! How automata look before anything is known: the prior over numbered tables
 //! whose states are all reachable.
 
+use std::sync::{Arc, OnceLock};
+
 use crate::identify::growth::{Growth, Manner, add_logs};
 
 /// The logarithms of the shares of tables drawn evenly, of those whose edges
@@ -12,19 +14,36 @@ const SHARES: [f64; 3] = [0.4, 0.4, 0.2];
 /// 1 each.
 const TRIVIAL: f64 = 0.05;
 
-/// The prior of all sizes up to a bound.
+/// The prior of all sizes up to a bound. Clones share what was worked out.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
-    sizes: Vec<Size>,
+    sizes: Arc<[Size]>,
 }
 
 /// The logarithms of the parts of one size's prior.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Size {
     even: f64,
     staying: f64,
     stay: f64,
     permuting: f64,
+    /// The whole, by how many edges stay, and by whether every symbol permutes the
+    /// states: chains ask for it at every step.
+    whole: OnceLock<Box<[[f64; 2]]>>,
+}
+
+impl Size {
+    /// The whole for tables with so many edges.
+    fn whole(&self, edges: usize) -> &[[f64; 2]] {
+        self.whole.get_or_init(|| {
+            let loops = 0..=edges;
+            let whole = loops.map(|loops| {
+                let plain = add_logs(self.even, self.staying + loops as f64 * self.stay);
+                [plain, add_logs(plain, self.permuting)]
+            });
+            whole.collect()
+        })
+    }
 }
 
 impl Shape {
@@ -32,8 +51,7 @@ impl Shape {
     /// likely as one state less.
     pub(crate) fn new(symbols: usize, most: usize, decay: f64) -> Self {
         let mut transitive: Vec<f64> = Vec::new();
-        let mut sizes = Vec::new();
-        for states in 1..=most {
+        let size = |states: usize| {
             let edges = (states * symbols) as f64;
             let outputs = -(states as f64) * std::f64::consts::LN_2;
             let size = outputs + size_prior(states, decay);
@@ -51,16 +69,19 @@ impl Shape {
             transitive.push(transitive_share(&transitive, symbols));
             let factorial: f64 = (1..=states).map(|n| (n as f64).ln()).sum();
             let shares = SHARES.map(f64::ln);
-            sizes.push(Size {
+            Size {
                 even: shares[0] + size + moved(0) - reached[0],
                 staying: shares[1] + size + moved(1) - reached[1],
                 stay: if states == 1 { 0.0 } else { stay[1] - leave[1] },
                 permuting: shares[2] + size
                     - symbols as f64 * factorial
                     - transitive[states - 1].ln(),
-            });
+                whole: OnceLock::new(),
+            }
+        };
+        Self {
+            sizes: (1..=most).map(size).collect(),
         }
-        Self { sizes }
     }
 
     /// The number of states of the largest.
@@ -71,26 +92,20 @@ impl Shape {
     /// The logarithm of the prior of one numbered table (its states but the
     /// first may be numbered in any way), all of whose states are reachable.
     pub(crate) fn log_prior(&self, delta: &[u8], states: usize) -> f64 {
-        let size = &self.sizes[states - 1];
         let symbols = delta.len() / states;
-        let mut loops = 0_u32;
+        let mut loops = 0;
         let mut permuting = true;
         for symbol in 0..symbols {
             let mut seen: u64 = 0;
             for state in 0..states {
                 let target = usize::from(delta[state * symbols + symbol]);
-                loops += u32::from(target == state);
+                loops += usize::from(target == state);
                 let bit = 1 << target;
                 permuting &= seen & bit == 0;
                 seen |= bit;
             }
         }
-        let plain = add_logs(size.even, size.staying + f64::from(loops) * size.stay);
-        if permuting {
-            add_logs(plain, size.permuting)
-        } else {
-            plain
-        }
+        self.sizes[states - 1].whole(delta.len())[loops][usize::from(permuting)]
     }
 }
 
