@@ -76,7 +76,7 @@ pub(crate) struct Foresight {
 }
 
 impl Foresight {
-    /// On a machine on which so many sessions think at the same time.
+    /// On a machine with so many cores.
     pub(crate) fn new(width: usize) -> Self {
         Self {
             sessions: Mutex::default(),

@@ -145,6 +145,7 @@ impl Mover {
 /// Whether what has a chance of this logarithm happens; where that is not below zero,
 /// it does.
 pub(super) fn is_drawn(log_chance: f64, rng: &mut ChaCha8Rng) -> bool {
+    // In any case, so that what is drawn later does not go by it.
     let drawn = rng.random::<f64>();
     log_chance >= 0.0 || drawn.ln() < log_chance
 }
