@@ -44,6 +44,39 @@ impl End {
     }
 }
 
+/// A place in which atoms end, as a concept has it: what their ends have in common, for
+/// those who ask for many of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    common: u64,
+    /// Where the merit goes that not all have in common.
+    merit: u64,
+}
+
+impl Place {
+    /// The place of this number, as [`End::new`] is told it, outside.
+    pub fn outside(number: u32) -> Self {
+        Self {
+            common: End::new(false, Some(number), 0).0,
+            merit: u64::from(u32::MAX) << PLACE_BITS,
+        }
+    }
+
+    /// The same inside, where it leaves so much room.
+    pub fn inside(number: u32, room: u32) -> Self {
+        Self {
+            common: End::new(true, Some(number), room).0,
+            merit: 0,
+        }
+    }
+
+    /// The end of an atom there, which did well for so long if it is outside.
+    #[inline]
+    pub fn end(self, progress: u32) -> End {
+        End(self.common | u64::from(progress) << PLACE_BITS & self.merit)
+    }
+}
+
 impl fmt::Debug for End {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let place = self.place().checked_sub(1);

@@ -31,105 +31,106 @@ pub(super) const WRONG: usize = CELLS;
 pub(super) const RIGHT: usize = CELLS + 1;
 /// What is certain and not true.
 pub(super) const UNTRUE: usize = CELLS + 2;
-/// What nobody asks for.
-const IDLE: usize = CELLS + 3;
+
+/// By cell, and then the others, to the end of a register.
+type Counts = [u16; COUNTS];
+const COUNTS: usize = 24;
 
 /// The answers of one teacher, as a concept sees them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
-    /// By cell, and then the others.
-    pub(super) counts: [u16; IDLE + 1],
+    pub(super) counts: Counts,
 }
 
-/// Where an answer counts: its cell, and what it says of the concept by whether it is
-/// unsure or sure.
-#[derive(Clone, Copy)]
-struct Places {
-    cell: u8,
-    said: [u8; 2],
-}
-
-impl Places {
-    /// Of an answer to a comparison of atoms that end like this.
-    const fn of(ending: Ending, verdict: Verdict) -> Self {
-        let (cell, right) = match (ending, verdict) {
-            (Ending::SecondOnly, Verdict::Worse) => (0, Some(true)),
-            (Ending::FirstOnly, Verdict::Worse)
-            | (Ending::FirstOnly | Ending::SecondOnly, Verdict::Equal) => (IDLE, Some(false)),
-            (Ending::FirstOnly | Ending::SecondOnly, Verdict::Incomparable) => (1, None),
-            (Ending::SamePlace, Verdict::Worse) => (2, None),
-            (Ending::SamePlace, Verdict::Equal) => (3, None),
-            (Ending::SamePlace, Verdict::Incomparable) => (4, None),
-            (Ending::Inside, Verdict::Worse) => (5, None),
-            (Ending::Inside, Verdict::Equal) => (6, None),
-            (Ending::Inside, Verdict::Incomparable) => (7, None),
-            (Ending::Outside, Verdict::Worse) => (8, None),
-            (Ending::Outside, Verdict::Equal) => (9, None),
-            (Ending::Outside, Verdict::Incomparable) => (10, None),
-            (Ending::SecondFurther, Verdict::Worse) => (11, None),
-            (Ending::FirstFurther, Verdict::Worse) => (12, None),
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => (13, None),
-            (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => (14, None),
-            (Ending::SecondFreer, Verdict::Worse) => (15, None),
-            (Ending::FirstFreer, Verdict::Worse) => (16, None),
-            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Equal) => (17, None),
-            (Ending::FirstFreer | Ending::SecondFreer, Verdict::Incomparable) => (18, None),
-        };
-        Self {
-            cell: cell as u8,
-            said: match right {
-                Some(right) => said(right),
-                None => [IDLE as u8; 2],
-            },
-        }
+/// What the answer to a comparison of atoms that end like this counts as: the cell, and
+/// whether it is right or wrong of the concept, where it is one of these.
+const fn counted(ending: Ending, verdict: Verdict) -> (Option<usize>, Option<bool>) {
+    match (ending, verdict) {
+        (Ending::SecondOnly, Verdict::Worse) => (Some(0), Some(true)),
+        (Ending::FirstOnly, Verdict::Worse)
+        | (Ending::FirstOnly | Ending::SecondOnly, Verdict::Equal) => (None, Some(false)),
+        (Ending::FirstOnly | Ending::SecondOnly, Verdict::Incomparable) => (Some(1), None),
+        (Ending::SamePlace, Verdict::Worse) => (Some(2), None),
+        (Ending::SamePlace, Verdict::Equal) => (Some(3), None),
+        (Ending::SamePlace, Verdict::Incomparable) => (Some(4), None),
+        (Ending::Inside, Verdict::Worse) => (Some(5), None),
+        (Ending::Inside, Verdict::Equal) => (Some(6), None),
+        (Ending::Inside, Verdict::Incomparable) => (Some(7), None),
+        (Ending::Outside, Verdict::Worse) => (Some(8), None),
+        (Ending::Outside, Verdict::Equal) => (Some(9), None),
+        (Ending::Outside, Verdict::Incomparable) => (Some(10), None),
+        (Ending::SecondFurther, Verdict::Worse) => (Some(11), None),
+        (Ending::FirstFurther, Verdict::Worse) => (Some(12), None),
+        (Ending::FirstFurther | Ending::SecondFurther, Verdict::Equal) => (Some(13), None),
+        (Ending::FirstFurther | Ending::SecondFurther, Verdict::Incomparable) => (Some(14), None),
+        (Ending::SecondFreer, Verdict::Worse) => (Some(15), None),
+        (Ending::FirstFreer, Verdict::Worse) => (Some(16), None),
+        (Ending::FirstFreer | Ending::SecondFreer, Verdict::Equal) => (Some(17), None),
+        (Ending::FirstFreer | Ending::SecondFreer, Verdict::Incomparable) => (Some(18), None),
     }
 }
 
-/// Where something counts that is right of a concept or not, by whether it is unsure
-/// or sure.
-const fn said(right: bool) -> [u8; 2] {
-    if right {
-        [RIGHT as u8, IDLE as u8]
-    } else {
-        [WRONG as u8, UNTRUE as u8]
+/// A one wherever something counts that falls into this cell, and that is right of a
+/// concept or not, if that is unsure or sure.
+const fn ones(cell: Option<usize>, right: Option<bool>, sure: bool) -> Counts {
+    let mut ones = [0; COUNTS];
+    if let Some(cell) = cell {
+        ones[cell] = 1;
     }
+    match (right, sure) {
+        (Some(false), false) => ones[WRONG] = 1,
+        (Some(true), false) => ones[RIGHT] = 1,
+        (Some(false), true) => ones[UNTRUE] = 1,
+        (Some(true), true) | (None, _) => {}
+    }
+    ones
 }
 
-/// By ending and verdict.
-const PLACES: [[Places; Verdict::ALL.len()]; Ending::ALL.len()] = {
-    let mut places =
-        [[Places::of(Ending::Inside, Verdict::Equal); Verdict::ALL.len()]; Ending::ALL.len()];
+/// Of answers to comparisons: by ending, by verdict, and by whether they are sure.
+const COMPARISONS: [[[Counts; 2]; Verdict::ALL.len()]; Ending::ALL.len()] = {
+    let mut table = [[[[0; COUNTS]; 2]; Verdict::ALL.len()]; Ending::ALL.len()];
     let mut ending = 0;
     while ending < Ending::ALL.len() {
         let mut verdict = 0;
         while verdict < Verdict::ALL.len() {
-            places[ending][verdict] = Places::of(Ending::ALL[ending], Verdict::ALL[verdict]);
+            let (cell, right) = counted(Ending::ALL[ending], Verdict::ALL[verdict]);
+            table[ending][verdict] = [ones(cell, right, false), ones(cell, right, true)];
             verdict += 1;
         }
         ending += 1;
     }
-    places
+    table
 };
+
+/// Of labels: by whether they agree with the concept, and by whether they are sure.
+const LABELS: [[Counts; 2]; 2] = [
+    [
+        ones(None, Some(false), false),
+        ones(None, Some(false), true),
+    ],
+    [ones(None, Some(true), false), ones(None, Some(true), true)],
+];
 
 impl Tally {
     /// Takes note of a label that agrees with the concept or not.
     #[inline]
     pub fn label(&mut self, agrees: bool, sure: bool) {
-        self.count(said(agrees)[usize::from(sure)]);
+        self.add(&LABELS[usize::from(agrees)][usize::from(sure)]);
     }
 
     /// Takes note of the answer to a comparison of atoms that end like this.
     #[inline]
     pub fn comparison(&mut self, ending: Ending, verdict: Verdict, sure: bool) {
-        // No branches, as with endings.
-        let places = &PLACES[ending as usize][verdict as usize];
-        self.count(places.cell);
-        self.count(places.said[usize::from(sure)]);
+        // No branches, as with endings; and whole registers, since one place is counted
+        // at again and again.
+        self.add(&COMPARISONS[ending as usize][verdict as usize][usize::from(sure)]);
     }
 
-    fn count(&mut self, place: u8) {
-        let count = &mut self.counts[usize::from(place)];
-        *count = count.wrapping_add(1);
+    #[inline]
+    fn add(&mut self, ones: &Counts) {
+        for (count, one) in self.counts.iter_mut().zip(ones) {
+            *count = count.wrapping_add(*one);
+        }
     }
 
     /// Whether something certain is not true of the concept.

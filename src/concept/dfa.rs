@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{ConceptClass, End, Failure, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
-use crate::identify::{self, Ends, Identifier, Settings};
+use crate::identify::{self, Identifier, Settings};
 
 /// Words up to this length are drawn to check even the smallest hypothesis.
 const LONGEST: usize = 10;
@@ -85,9 +85,7 @@ impl ConceptClass for DfaClass {
     }
 
     fn ends(&self, concepts: &[&Dfa], atoms: &[Word]) -> Vec<Vec<End>> {
-        let ends: Vec<Ends<'_>> = concepts.iter().copied().map(Ends::new).collect();
-        let of = |atom| ends.iter().map(|ends| ends.of(atom)).collect();
-        atoms.iter().map(of).collect()
+        identify::ends(concepts, atoms)
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

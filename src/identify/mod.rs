@@ -4,6 +4,7 @@
 
 mod completion;
 mod contradiction;
+mod ends;
 mod engine;
 mod enumerate;
 mod grow;
@@ -20,11 +21,10 @@ mod sat;
 mod spread;
 mod tree;
 
-use automata::{Dfa, StateId, Word};
+use automata::Dfa;
 
-use self::particles::Step;
-use crate::belief::End;
 use crate::evidence::AnswerId;
+pub use ends::{end, ends};
 pub use identifier::Identifier;
 pub use spread::{Spread, Weighted, Wish};
 
@@ -106,65 +106,4 @@ pub struct Sample {
     pub automata: Vec<Dfa>,
     /// Whether there are no others of this size.
     pub complete: bool,
-}
-
-/// How words end in an automaton.
-#[derive(Clone, Debug)]
-pub struct Ends<'a> {
-    dfa: &'a Dfa,
-    /// By state, whether it is a rejecting sink.
-    sunk: Vec<bool>,
-    /// By state, how many words of two symbols lead on to acceptance (section 5.3,
-    /// "Tomita languages").
-    room: Vec<u32>,
-}
-
-impl<'a> Ends<'a> {
-    /// In this automaton.
-    pub fn new(dfa: &'a Dfa) -> Self {
-        let next = |state| dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
-        let stays = |state| next(state).all(|to| to == state);
-        let room = |state| {
-            next(state)
-                .flat_map(next)
-                .filter(|&end| dfa.is_accepting(end))
-        };
-        Self {
-            dfa,
-            sunk: (dfa.states())
-                .map(|state| !dfa.is_accepting(state) && stays(state))
-                .collect(),
-            room: dfa
-                .states()
-                .map(|state| room(state).count() as u32)
-                .collect(),
-        }
-    }
-
-    /// How a word over its alphabet ends.
-    pub fn of(&self, word: &Word) -> End {
-        let step = |state: StateId, depth: usize| Step {
-            depth: depth as u32,
-            accepting: self.dfa.is_accepting(state),
-            sunk: self.sunk[state.index()],
-        };
-        let mut state = self.dfa.start();
-        let mut progress = step(state, 0).progress(None);
-        for (read, symbol) in word.iter().enumerate() {
-            state = self.dfa.next(state, symbol);
-            progress = step(state, read + 1).progress(Some(progress));
-        }
-        let inside = self.dfa.is_accepting(state);
-        let merit = if inside {
-            self.room[state.index()]
-        } else {
-            progress
-        };
-        End::new(inside, Some(state.index() as u32), merit)
-    }
-}
-
-/// How a word ends in an automaton.
-pub fn end(dfa: &Dfa, word: &Word) -> End {
-    Ends::new(dfa).of(word)
 }

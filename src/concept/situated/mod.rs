@@ -20,7 +20,7 @@ use self::reduced::Reduced;
 use super::prior::{Applied, Prior, PriorError, product, spelled};
 use super::{Cause, ConceptClass, Contradiction, End, Failure, Heard, Sample, Spread, Wish};
 use crate::evidence::{AnswerId, Budget, Fact};
-use crate::identify::{self, Ends, Settings};
+use crate::identify::{self, Settings};
 use crate::world::World;
 
 /// Words about this long are drawn to check even the smallest hypothesis.
@@ -249,12 +249,13 @@ impl ConceptClass for Situated {
     }
 
     fn ends(&self, concepts: &[&Dfa], atoms: &[Word]) -> Vec<Vec<End>> {
-        let ends: Vec<Ends<'_>> = concepts.iter().copied().map(Ends::new).collect();
-        let of = |atom| match self.prior.settled(atom) {
-            None => ends.iter().map(|ends| ends.of(atom)).collect(),
-            Some(inside) => vec![End::new(inside, None, 0); concepts.len()],
-        };
-        atoms.iter().map(of).collect()
+        let mut ends = identify::ends(concepts, atoms);
+        for (ends, atom) in ends.iter_mut().zip(atoms) {
+            if let Some(inside) = self.prior.settled(atom) {
+                ends.fill(End::new(inside, None, 0));
+            }
+        }
+        ends
     }
 
     fn witnesses(&self, inside: &Dfa, outside: &Dfa, count: usize) -> Vec<Word> {

@@ -42,7 +42,7 @@ impl Ground<'_> {
     /// How a table stands all of whose states are reachable.
     fn judge(&self, delta: &[u8], output: &[bool], run: &mut Run) -> Standing {
         self.script.run(delta, output, run);
-        let tally = self.script.tally(delta, output, run);
+        let tally = self.script.tally(output, run);
         Standing {
             prior: self.shape.log_prior(delta, output.len()),
             likelihood: self.belief.log_chance(&tally),
@@ -78,15 +78,24 @@ const COPIED: f64 = 0.6;
 const SAME_OUTPUT: f64 = 0.7;
 
 /// Moves machines on one ground.
-#[derive(Default)]
 pub(crate) struct Mover {
     spare: Option<Machine>,
     run: Run,
+    odds: Odds,
     /// None of what not all states of can be reached.
     memo: Memo<Option<Standing>, 12>,
 }
 
 impl Mover {
+    pub(crate) fn new(ground: &Ground<'_>) -> Self {
+        Self {
+            spare: None,
+            run: Run::default(),
+            odds: Odds::new(ground),
+            memo: Memo::default(),
+        }
+    }
+
     /// One step of the chain.
     pub(crate) fn step(
         &mut self,
@@ -107,8 +116,8 @@ impl Mover {
                 other.output[state] ^= true;
                 Some(0.0)
             }
-            70..85 => split(&mut other, ground, rng),
-            _ => merge(&mut other, ground.symbols, rng),
+            70..85 => split(&mut other, ground, &self.odds, rng),
+            _ => merge(&mut other, ground.symbols, &self.odds, rng),
         };
         let accepted = bonus.is_some_and(|bonus| {
             let Some(standing) = self.judge(&other, ground) else {
@@ -190,7 +199,12 @@ fn swap(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<f
 
 /// Lets some of the edges into a state lead to a new one, whose row is partly a
 /// copy of the old state's and partly drawn.
-fn split(machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) -> Option<f64> {
+fn split(
+    machine: &mut Machine,
+    ground: &Ground<'_>,
+    odds: &Odds,
+    rng: &mut ChaCha8Rng,
+) -> Option<f64> {
     let states = machine.states();
     let symbols = ground.symbols;
     if states == ground.shape.most() {
@@ -232,13 +246,13 @@ fn split(machine: &mut Machine, ground: &Ground<'_>, rng: &mut ChaCha8Rng) -> Op
     }
     let output = machine.output[old] ^ (rng.random::<f64>() >= SAME_OUTPUT);
     machine.output.push(output);
-    let chance = split_chance(machine, symbols, old, [moved, into]);
+    let chance = odds.split_chance(machine, symbols, old, [moved, into]);
     exchange(machine, symbols, rng.random_range(1..=states), states);
     Some(-chance)
 }
 
 /// The reverse of [`split`].
-fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<f64> {
+fn merge(machine: &mut Machine, symbols: usize, odds: &Odds, rng: &mut ChaCha8Rng) -> Option<f64> {
     let last = machine.states() - 1;
     if last == 0 {
         return None;
@@ -252,7 +266,7 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
         moved += usize::from(target == last);
         into += usize::from(target == last || target == old);
     }
-    let chance = split_chance(machine, symbols, old, [moved, into]);
+    let chance = odds.split_chance(machine, symbols, old, [moved, into]);
     for target in &mut machine.delta {
         if usize::from(*target) == last {
             *target = old as u8;
@@ -263,28 +277,65 @@ fn merge(machine: &mut Machine, symbols: usize, rng: &mut ChaCha8Rng) -> Option<
     Some(chance)
 }
 
-/// The logarithm of the chance with which [`split`] draws the last state of a
-/// machine from state `old`, which had so many edges into it, of which so many were
-/// moved.
-fn split_chance(machine: &Machine, symbols: usize, old: usize, [moved, into]: [usize; 2]) -> f64 {
-    let last = machine.states() - 1;
-    let into = into as f64;
-    let one = if moved == 1 { 0.5 / into } else { 0.0 };
-    let mut chance = (one + 0.5 * (-into).exp2()).ln();
-    let row = &machine.delta[old * symbols..(old + 1) * symbols];
-    let new = &machine.delta[last * symbols..];
-    for (&target, &copied) in new.iter().zip(row) {
-        let (target, copied) = (usize::from(target), usize::from(copied));
-        // An edge of the old state that was moved had led to itself.
-        let copy = if copied == old || copied == last {
-            f64::from(u8::from(target == old || target == last)) / 2.0
-        } else {
-            f64::from(u8::from(target == copied))
+/// The logarithms of the chances of what [`split`] draws: it is asked for at every
+/// third step.
+struct Odds {
+    /// Of the edges that were moved, by the number of those that might have been and by
+    /// whether it was one only.
+    moved: Vec<[f64; 2]>,
+    /// Of a new state's edge, by the number of states with it, and by how many halves of
+    /// the copied edge lead where it does.
+    edge: Vec<[f64; 3]>,
+    /// Of its output, by whether that is copied.
+    output: [f64; 2],
+}
+
+impl Odds {
+    fn new(ground: &Ground<'_>) -> Self {
+        let most = ground.shape.most();
+        let moved = |into: usize| {
+            let into = into as f64;
+            [0.0, 0.5 / into].map(|one: f64| (one + 0.5 * (-into).exp2()).ln())
         };
-        chance += (COPIED * copy + (1.0 - COPIED) / machine.states() as f64).ln();
+        let edge = |states: usize| {
+            let drawn = (1.0 - COPIED) / states as f64;
+            [0.0, 0.5, 1.0].map(|copy: f64| (COPIED * copy + drawn).ln())
+        };
+        Self {
+            moved: (0..=most * ground.symbols).map(moved).collect(),
+            edge: (0..=most).map(edge).collect(),
+            output: [1.0 - SAME_OUTPUT, SAME_OUTPUT].map(f64::ln),
+        }
     }
-    let same = machine.output[last] == machine.output[old];
-    chance + if same { SAME_OUTPUT } else { 1.0 - SAME_OUTPUT }.ln()
+
+    /// The logarithm of the chance with which [`split`] draws the last state of a
+    /// machine from state `old`, which had so many edges into it, of which so many were
+    /// moved.
+    fn split_chance(
+        &self,
+        machine: &Machine,
+        symbols: usize,
+        old: usize,
+        [moved, into]: [usize; 2],
+    ) -> f64 {
+        let last = machine.states() - 1;
+        let mut chance = self.moved[into][usize::from(moved == 1)];
+        let edge = &self.edge[machine.states()];
+        let row = &machine.delta[old * symbols..(old + 1) * symbols];
+        let new = &machine.delta[last * symbols..];
+        for (&target, &copied) in new.iter().zip(row) {
+            let (target, copied) = (usize::from(target), usize::from(copied));
+            // An edge of the old state that was moved had led to itself.
+            let halves = if copied == old || copied == last {
+                usize::from(target == old || target == last)
+            } else {
+                2 * usize::from(target == copied)
+            };
+            chance += edge[halves];
+        }
+        let same = machine.output[last] == machine.output[old];
+        chance + self.output[usize::from(same)]
+    }
 }
 
 /// Exchanges the numbers of two states, neither of them the start.

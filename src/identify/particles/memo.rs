@@ -7,12 +7,16 @@ use std::ops::{BitOr, Shl};
 /// another takes it.
 pub(super) struct Memo<T, const BITS: u32> {
     places: Vec<Option<(u128, T)>>,
+    /// A few bits of the number of what is there: most of what is asked for is not, and
+    /// that shows without a look at what does not fit near the processor.
+    tags: Vec<u8>,
 }
 
 impl<T: Copy, const BITS: u32> Default for Memo<T, BITS> {
     fn default() -> Self {
         Self {
             places: vec![None; 1 << BITS],
+            tags: vec![0; 1 << BITS],
         }
     }
 }
@@ -20,20 +24,28 @@ impl<T: Copy, const BITS: u32> Default for Memo<T, BITS> {
 impl<T: Copy, const BITS: u32> Memo<T, BITS> {
     /// What was found of the table with this [`key`], if that is remembered.
     pub(super) fn get(&self, key: u128) -> Option<T> {
-        let known = self.places[Self::place(key)].filter(|(known, _)| *known == key);
+        let (place, tag) = Self::place(key);
+        if self.tags[place] != tag {
+            return None;
+        }
+        let known = self.places[place].filter(|(known, _)| *known == key);
         known.map(|(_, found)| found)
     }
 
     /// Takes note of what was found.
     pub(super) fn keep(&mut self, key: u128, found: T) {
-        self.places[Self::place(key)] = Some((key, found));
+        let (place, tag) = Self::place(key);
+        self.tags[place] = tag;
+        self.places[place] = Some((key, found));
     }
 
-    fn place(key: u128) -> usize {
+    /// Its place, and its tag.
+    fn place(key: u128) -> (usize, u8) {
         // Fibonacci hashing of both halves.
         const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
         let folded = (key as u64).wrapping_mul(GOLDEN) ^ (key >> 64) as u64;
-        (folded.wrapping_mul(GOLDEN) >> (u64::BITS - BITS)) as usize
+        let hash = folded.wrapping_mul(GOLDEN) >> (u64::BITS - BITS - u8::BITS);
+        ((hash >> u8::BITS) as usize, hash as u8)
     }
 }
 

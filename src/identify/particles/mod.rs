@@ -178,7 +178,7 @@ impl Particles {
                 })
             })
             .collect();
-        let mut mover = Mover::default();
+        let mut mover = Mover::new(&ground);
         let mut visits = Visits::default();
         let mut guiding = None;
         let (rounds, legs) = effort(self.script.nodes());

@@ -3,7 +3,7 @@
 use automata::Word;
 
 use super::LARGEST;
-use crate::belief::{End, Ending, Heard, Tally, Verdict, compared};
+use crate::belief::{Ending, Heard, Place, Tally, Verdict, compared};
 use crate::evidence::Fact;
 
 /// A node of the tree but its root.
@@ -21,6 +21,9 @@ const NOWHERE: u8 = u8::MAX;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Run {
     at: Vec<At>,
+    /// By state, what ends of words there have in common: in acceptance, how many words
+    /// of two symbols lead on to it.
+    places: Vec<Place>,
 }
 
 /// A node of a [`Run`]: its state, and above that how long its word did well.
@@ -127,6 +130,9 @@ impl Script {
             accepting: output[usize::from(state)],
             sunk: state == sink,
         };
+        if !self.comparisons.is_empty() {
+            run.survey(self.symbols, delta, output);
+        }
         run.at[0] = At::new(0, step(0, 0).progress(None));
         for (depth, nodes) in (1..).zip(&self.levels) {
             for node in nodes {
@@ -139,7 +145,7 @@ impl Script {
     }
 
     /// What was heard, as a table with these outputs sees it after its [`Run`].
-    pub(crate) fn tally(&self, delta: &[u8], output: &[bool], run: &Run) -> Tally {
+    pub(crate) fn tally(&self, output: &[bool], run: &Run) -> Tally {
         let mut tally = Tally::default();
         for &(node, accepted, sure) in &self.labels {
             let out = output[run.at[node as usize].state()];
@@ -148,30 +154,36 @@ impl Script {
         if self.comparisons.is_empty() {
             return tally;
         }
-        let room = self.room(delta, output);
         let end = |node: u32| {
             let at = run.at[node as usize];
-            let inside = output[at.state()];
-            let merits = [at.progress(), room[at.state()].into()];
-            End::new(inside, Some(at.state() as u32), merits[usize::from(inside)])
+            run.places[at.state()].end(at.progress())
         };
         for &(first, second, verdict, sure) in &self.comparisons {
             tally.comparison(Ending::of(end(first), end(second)), verdict, sure);
         }
         tally
     }
+}
 
-    /// How many words of two symbols lead from each state on to acceptance.
-    fn room(&self, delta: &[u8], output: &[bool]) -> [u16; LARGEST] {
-        let mut one = [0_u16; LARGEST];
-        let mut two = [0_u16; LARGEST];
-        for (sum, row) in one.iter_mut().zip(delta.chunks_exact(self.symbols)) {
-            *sum = row.iter().map(|&t| u16::from(output[usize::from(t)])).sum();
+impl Run {
+    /// Looks at the places of a table.
+    fn survey(&mut self, symbols: usize, delta: &[u8], output: &[bool]) {
+        let mut ways = [0_u32; LARGEST];
+        let rows = || delta.chunks_exact(symbols);
+        for (ways, row) in ways.iter_mut().zip(rows()) {
+            *ways = row
+                .iter()
+                .map(|&to| u32::from(output[usize::from(to)]))
+                .sum();
         }
-        for (sum, row) in two.iter_mut().zip(delta.chunks_exact(self.symbols)) {
-            *sum = row.iter().map(|&t| one[usize::from(t)]).sum();
+        self.places.clear();
+        for (state, (row, &accepting)) in (0..).zip(rows().zip(output)) {
+            self.places.push(if accepting {
+                Place::inside(state, row.iter().map(|&to| ways[usize::from(to)]).sum())
+            } else {
+                Place::outside(state)
+            });
         }
-        two
     }
 }
 

@@ -29,7 +29,9 @@ pub(super) struct Visits {
     /// The largest such logarithm of every ladder.
     best: [Option<f64>; LADDERS],
     /// What every ladder visited lately: once is as good as often.
-    lately: [Memo<(), 8>; LADDERS],
+    lately: [Memo<(), 10>; LADDERS],
+    /// Room for the next table.
+    spare: Table,
 }
 
 /// Of automata that are alike, how many were seen at all, by one ladder only, and
@@ -55,11 +57,13 @@ impl Visits {
             }
             lately.keep(key, ());
         }
-        let delta = machine.delta.iter().map(|&t| u32::from(t)).collect();
-        let table: Table = (delta, machine.output.clone());
-        if is_minimal(&table) {
+        let (delta, output) = &mut self.spare;
+        delta.clear();
+        delta.extend(machine.delta.iter().map(|&target| u32::from(target)));
+        output.clone_from(&machine.output);
+        if is_minimal(&self.spare) {
             let chance = machine.log_chance() + numberings(machine.states());
-            let seen = self.seen.entry(breadth_first(&table));
+            let seen = self.seen.entry(breadth_first(&self.spare));
             seen.or_insert((chance, 0)).1 |= 1 << ladder;
             let best = self.best[ladder].get_or_insert(chance);
             *best = best.max(chance);
