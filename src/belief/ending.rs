@@ -77,6 +77,66 @@ impl Place {
     }
 }
 
+/// So many ends are compared at once.
+pub const LANES: usize = 16;
+
+/// How an atom ends in one concept after another: what many pairs of atoms are compared
+/// by, [`LANES`] at a time.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// The last one is filled up.
+    lanes: Vec<Lanes>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Lanes {
+    /// In the order of merit.
+    merits: [i32; LANES],
+    /// Above the number of the place the bit for what is inside.
+    places: [u32; LANES],
+}
+
+impl FromIterator<End> for Column {
+    fn from_iter<I: IntoIterator<Item = End>>(ends: I) -> Self {
+        let mut lanes = Vec::new();
+        for (lane, end) in (0..LANES).cycle().zip(ends) {
+            if lane == 0 {
+                lanes.push(Lanes {
+                    merits: [0; LANES],
+                    places: [0; LANES],
+                });
+            }
+            if let Some(last) = lanes.last_mut() {
+                // Processors compare what has a sign.
+                last.merits[lane] = (end.merit() ^ 1 << 31).cast_signed();
+                last.places[lane] = end.place() as u32 | u32::from(end.is_inside()) << PLACE_BITS;
+            }
+        }
+        Self { lanes }
+    }
+}
+
+impl Column {
+    /// How pairs of atoms end, from concept to concept: what comes after the last of
+    /// these says nothing.
+    #[inline]
+    pub fn endings<'a>(&'a self, second: &'a Self) -> impl Iterator<Item = [Ending; LANES]> + 'a {
+        let pairs = self.lanes.iter().zip(&second.lanes);
+        pairs.map(|(first, second)| {
+            let numbers: [u32; LANES] = std::array::from_fn(|lane| {
+                let merits = [first.merits[lane], second.merits[lane]];
+                let places = [first.places[lane], second.places[lane]];
+                let same = u32::from(places[0] == places[1]) & u32::from(places[0] << 1 != 0);
+                same | u32::from(merits[0] > merits[1]) << 1
+                    | u32::from(merits[0] < merits[1]) << 2
+                    | places[1] >> PLACE_BITS << 3
+                    | places[0] >> PLACE_BITS << 4
+            });
+            numbers.map(|number| ENDINGS[number as usize % ENDINGS.len()])
+        })
+    }
+}
+
 impl fmt::Debug for End {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let place = self.place().checked_sub(1);
@@ -192,6 +252,13 @@ mod tests {
                 let expected = Ending::told([first.0, second.0], more, same);
                 assert_eq!(Ending::of(one, other), expected, "{one:?} {other:?}");
                 assert_eq!(one == other, first == second);
+                let [one, other] = [one, other].map(|end| Column::from_iter([end; LANES + 1]));
+                assert!(
+                    one.endings(&other)
+                        .flatten()
+                        .take(LANES + 1)
+                        .all(|e| e == expected)
+                );
             }
         }
     }

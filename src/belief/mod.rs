@@ -10,7 +10,7 @@
 mod ending;
 mod tally;
 
-pub use self::ending::{End, Ending, Place};
+pub use self::ending::{Column, End, Ending, LANES, Place};
 pub use self::tally::Tally;
 use self::tally::{CELLS, ERRORS, PRIOR, RIGHT, UNTRUE, URNS, WRONG};
 use crate::evidence::Fact;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use automata::{Dfa, StateId, Symbol, Word};
 
-use super::particles::Step;
+use super::particles::Pace;
 use crate::belief::{End, Place};
 
 /// How a word over its alphabet ends in an automaton.
@@ -55,15 +55,15 @@ fn routes<'a>(words: &'a [Word]) -> Vec<(Option<usize>, &'a [Symbol])> {
 struct Reached {
     state: StateId,
     depth: u32,
-    /// As [`Step::progress`] tells it.
+    /// As [`Pace::progress`] tells it.
     progress: u32,
 }
 
 /// Reads words in an automaton.
 struct Reader<'a> {
     dfa: &'a Dfa,
-    /// By state, whether it is a rejecting sink.
-    sunk: Vec<bool>,
+    /// By state.
+    paces: Vec<Pace>,
     /// By state, what ends of words there have in common: in acceptance, how many words
     /// of two symbols lead on to it (section 5.3, "Tomita languages").
     places: Vec<Place>,
@@ -72,7 +72,10 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(dfa: &'a Dfa) -> Self {
         let next = |state| dfa.alphabet().symbols().map(move |a| dfa.next(state, a));
-        let stays = |state| next(state).all(|to| to == state);
+        let pace = |state: StateId| {
+            let accepting = dfa.is_accepting(state);
+            Pace::new(accepting, !accepting && next(state).all(|to| to == state))
+        };
         let room = |state| {
             let ends = next(state).flat_map(next);
             ends.filter(|&end| dfa.is_accepting(end)).count() as u32
@@ -87,18 +90,8 @@ impl<'a> Reader<'a> {
         };
         Self {
             dfa,
-            sunk: (dfa.states())
-                .map(|state| !dfa.is_accepting(state) && stays(state))
-                .collect(),
+            paces: dfa.states().map(pace).collect(),
             places: dfa.states().map(place).collect(),
-        }
-    }
-
-    fn step(&self, state: StateId, depth: u32) -> Step {
-        Step {
-            depth,
-            accepting: self.dfa.is_accepting(state),
-            sunk: self.sunk[state.index()],
         }
     }
 
@@ -107,7 +100,7 @@ impl<'a> Reader<'a> {
         Reached {
             state,
             depth: 0,
-            progress: self.step(state, 0).progress(None),
+            progress: self.paces[state.index()].start(),
         }
     }
 
@@ -115,8 +108,7 @@ impl<'a> Reader<'a> {
         for &symbol in symbols {
             at.state = self.dfa.next(at.state, symbol);
             at.depth += 1;
-            let step = self.step(at.state, at.depth);
-            at.progress = step.progress(Some(at.progress));
+            at.progress = self.paces[at.state.index()].progress(at.depth, at.progress);
         }
         at
     }

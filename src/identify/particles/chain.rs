@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::LARGEST;
 use super::memo::{self, Memo};
-use super::script::{Run, Script};
+use super::plan::{Plan, Run};
 use super::shape::Shape;
 use crate::belief::Belief;
 
@@ -33,7 +33,7 @@ pub(crate) struct Standing {
 /// What all chains share.
 pub(crate) struct Ground<'a> {
     pub(crate) shape: &'a Shape,
-    pub(crate) script: &'a Script,
+    pub(crate) plan: &'a Plan,
     pub(crate) belief: &'a Belief,
     pub(crate) symbols: usize,
 }
@@ -41,8 +41,7 @@ pub(crate) struct Ground<'a> {
 impl Ground<'_> {
     /// How a table stands all of whose states are reachable.
     fn judge(&self, delta: &[u8], output: &[bool], run: &mut Run) -> Standing {
-        self.script.run(delta, output, run);
-        let tally = self.script.tally(output, run);
+        let tally = self.plan.tally(delta, output, run);
         Standing {
             prior: self.shape.log_prior(delta, output.len()),
             likelihood: self.belief.log_chance(&tally),

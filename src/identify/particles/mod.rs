@@ -7,6 +7,7 @@ mod chain;
 mod guide;
 mod memo;
 mod places;
+mod plan;
 mod script;
 mod shape;
 mod visits;
@@ -21,8 +22,9 @@ use rand_chacha::ChaCha8Rng;
 use self::chain::{Ground, Machine, Mover, is_drawn};
 use self::guide::Guide;
 use self::places::Places;
+pub(crate) use self::plan::Pace;
+use self::plan::Plan;
 use self::script::Script;
-pub(crate) use self::script::Step;
 use self::shape::Shape;
 use self::visits::Visits;
 use super::completion::Table;
@@ -162,9 +164,10 @@ impl Particles {
     fn travel(&mut self) -> (Stage, BTreeMap<Table, f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(self.heard.len() as u64);
+        let plan = self.script.plan();
         let ground = Ground {
             shape: &self.shape,
-            script: &self.script,
+            plan: &plan,
             belief: &self.belief,
             symbols: self.symbols,
         };
@@ -181,7 +184,7 @@ impl Particles {
         let mut mover = Mover::new(&ground);
         let mut visits = Visits::default();
         let mut guiding = None;
-        let (rounds, legs) = effort(self.script.nodes());
+        let (rounds, legs) = effort(plan.nodes());
         for _ in 0..rounds {
             for (number, ladder) in machines.iter_mut().enumerate() {
                 let mut visit = |machine: &Machine| visits.add(number, machine);
@@ -304,7 +307,7 @@ fn numberings(states: usize) -> f64 {
 pub(crate) struct Posterior {
     symbols: usize,
     shape: Shape,
-    script: Script,
+    plan: Plan,
     belief: Belief,
 }
 
@@ -319,7 +322,7 @@ impl Posterior {
             symbols,
             shape: Shape::new(symbols, most.min(LARGEST), wish.decay),
             belief: Belief::new(script.len()),
-            script,
+            plan: script.plan(),
         }
     }
 
@@ -328,7 +331,7 @@ impl Posterior {
     pub(crate) fn log_chance(&self, (delta, output): &Table) -> f64 {
         let ground = Ground {
             shape: &self.shape,
-            script: &self.script,
+            plan: &self.plan,
             belief: &self.belief,
             symbols: self.symbols,
         };

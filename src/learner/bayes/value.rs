@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 
 use super::atoms::Table;
 use super::entropy;
-use crate::belief::{End, Tally};
+use crate::belief::{Column, End, LANES, Tally};
 use crate::concept::{ConceptClass, Ending};
 use crate::learner::exp4::{COMPARISON, MEMBERSHIP};
 use crate::learner::{Learner, Question};
@@ -92,11 +92,12 @@ pub(super) fn best<C: ConceptClass>(
         learner.evidence.may_compare(first, second)
     };
     let taught = 1.0 + HABITS / (1.0 + f64::from(learner.counts().comparison) / FAMILIAR);
+    let ends = columns(table, 1);
     let likeliest_first = std::iter::from_fn(|| pairs.pop());
     for pair in likeliest_first.filter(may_ask).take(CLOSELY) {
-        let ends = [pair.first, pair.second].map(|atom| &*table.ends[atom]);
+        let bits = outlook.bits(&ends[pair.first], &ends[pair.second]);
         let worth = Worth {
-            bits: taught * f64::from(outlook.bits(ends)),
+            bits: taught * f64::from(bits),
             cost: config.comparison_cost,
         };
         if beats(&comparison, worth) {
@@ -154,10 +155,7 @@ impl Eq for Pair {}
 fn rough_looks<A>(table: &Table<A>, outlook: &Outlook, accepts: &[f64]) -> BinaryHeap<Pair> {
     let stride = table.weights.len().div_ceil(ROUGHLY);
     let rough = outlook.every(stride);
-    // What is looked at again and again lies together.
-    let ends: Vec<Vec<End>> = (table.ends.iter())
-        .map(|ends| ends.iter().copied().step_by(stride).collect())
-        .collect();
+    let ends = columns(table, stride);
     // Labels that are sure on both sides cannot be told apart.
     let open: Vec<bool> = (accepts.iter())
         .map(|&accept| accept > NOTHING && accept < 1.0 - NOTHING)
@@ -166,7 +164,7 @@ fn rough_looks<A>(table: &Table<A>, outlook: &Outlook, accepts: &[f64]) -> Binar
     for second in 0..ends.len() {
         for first in 0..second {
             if open[first] || open[second] {
-                let bits = rough.bits([&ends[first], &ends[second]]);
+                let bits = rough.bits(&ends[first], &ends[second]);
                 pairs.push(Pair {
                     bits,
                     first,
@@ -176,6 +174,12 @@ fn rough_looks<A>(table: &Table<A>, outlook: &Outlook, accepts: &[f64]) -> Binar
         }
     }
     pairs.into()
+}
+
+/// How every atom ends in every `stride`-th concept.
+fn columns<A>(table: &Table<A>, stride: usize) -> Vec<Column> {
+    let column = |ends: &Vec<End>| ends.iter().copied().step_by(stride).collect();
+    table.ends.iter().map(column).collect()
 }
 
 /// What the concepts expect of comparisons.
@@ -214,12 +218,13 @@ impl Outlook {
 
     /// The bits about the concept that the answer to a comparison of atoms that end
     /// like this is expected to bring.
-    fn bits(&self, [first, second]: [&[End]; 2]) -> f32 {
+    fn bits(&self, first: &Column, second: &Column) -> f32 {
         let mut sums = [0.0_f32; 8];
-        for ((&first, &second), part) in first.iter().zip(second).zip(&self.parts) {
-            let part = &part[Ending::of(first, second) as usize];
-            for (sum, part) in sums.iter_mut().zip(part) {
-                *sum += part;
+        for (endings, parts) in first.endings(second).zip(self.parts.chunks(LANES)) {
+            for (part, ending) in parts.iter().zip(endings) {
+                for (sum, part) in sums.iter_mut().zip(&part[ending as usize]) {
+                    *sum += part;
+                }
             }
         }
         let all = sums[5].max(f32::MIN_POSITIVE);
