@@ -29,7 +29,7 @@ pub(super) struct Visits {
     /// The largest such logarithm of every ladder.
     best: [Option<f64>; LADDERS],
     /// What every ladder visited lately: once is as good as often.
-    lately: [Memo<(), 10>; LADDERS],
+    lately: [Memo<(), 8>; LADDERS],
     /// Room for the next table.
     spare: Table,
 }

@@ -160,7 +160,7 @@ fn rough_looks<A>(table: &Table<A>, outlook: &Outlook, accepts: &[f64]) -> Binar
     let open: Vec<bool> = (accepts.iter())
         .map(|&accept| accept > NOTHING && accept < 1.0 - NOTHING)
         .collect();
-    let mut pairs = Vec::new();
+    let mut pairs = Vec::with_capacity(ends.len() * ends.len() / 2);
     for second in 0..ends.len() {
         for first in 0..second {
             if open[first] || open[second] {
