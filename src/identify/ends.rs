@@ -14,7 +14,8 @@ pub fn end(dfa: &Dfa, word: &Word) -> End {
 }
 
 /// How each of some words ends in each of some automata, by word and then by
-/// automaton. Takes a step for every word where words come after their beginnings.
+/// automaton. Takes a step for every word where words come after their beginnings; long
+/// words without these are read each from the start.
 pub fn ends(automata: &[&Dfa], words: &[Word]) -> Vec<Vec<End>> {
     let routes = routes(words);
     let mut ends: Vec<Vec<End>> = (words.iter())
@@ -34,20 +35,21 @@ pub fn ends(automata: &[&Dfa], words: &[Word]) -> Vec<Vec<End>> {
     ends
 }
 
-/// For every word the longest beginning among those before it, and what follows that.
-fn routes<'a>(words: &'a [Word]) -> Vec<(Option<usize>, &'a [Symbol])> {
+/// For every word the place of the same but for its last symbol, if that came before,
+/// and what is left to read.
+fn routes(words: &[Word]) -> Vec<(Option<usize>, &[Symbol])> {
     let mut known: HashMap<&[Symbol], usize> = HashMap::with_capacity(words.len());
-    let route = |(number, word): (usize, &'a Word)| {
+    let mut routes = Vec::with_capacity(words.len());
+    for (number, word) in words.iter().enumerate() {
         let symbols = word.symbols();
-        let mut lengths = (0..=symbols.len()).rev();
-        let found = lengths.find_map(|length| Some((length, *known.get(&symbols[..length])?)));
-        known.insert(symbols, number);
-        match found {
-            Some((length, before)) => (Some(before), &symbols[length..]),
+        let (before, last) = symbols.split_at(symbols.len().saturating_sub(1));
+        routes.push(match known.get(before) {
+            Some(&before) => (Some(before), last),
             None => (None, symbols),
-        }
-    };
-    words.iter().enumerate().map(route).collect()
+        });
+        known.insert(symbols, number);
+    }
+    routes
 }
 
 /// Where a word has come to.
