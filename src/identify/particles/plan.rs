@@ -193,3 +193,63 @@ impl Pace {
         before.min(limit).max(least)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use automata::{Alphabet, Word};
+
+    use super::*;
+    use crate::belief::{Heard, Verdict};
+    use crate::evidence::Fact;
+    use crate::identify::completion::automaton;
+    use crate::identify::end;
+    use crate::identify::particles::script::Script;
+
+    /// All words of up to three symbols are labelled, and compared with each other.
+    #[test]
+    fn a_plan_sees_what_words_come_to_one_by_one() {
+        let alphabet = Alphabet::new(["a", "b"]).expect("two symbols");
+        let words: Vec<Word> = alphabet.words().take(15).collect();
+        let mut script = Script::new(alphabet.len());
+        for (number, atom) in words.iter().rev().enumerate() {
+            script.add(&Heard {
+                fact: Fact::Label {
+                    atom: atom.clone(),
+                    accepted: number % 3 == 0,
+                },
+                sure: number % 2 == 0,
+            });
+            for better in &words {
+                script.add(&Heard {
+                    fact: Fact::Below {
+                        worse: atom.clone(),
+                        better: better.clone(),
+                    },
+                    sure: number % 2 == 0,
+                });
+            }
+        }
+        // The last one has a rejecting sink.
+        let tables: [(&[u8], &[bool]); 3] = [
+            (&[0, 0], &[true]),
+            (&[1, 0, 2, 1, 0, 2], &[true, false, true]),
+            (&[0, 1, 2, 1, 2, 2], &[false, true, false]),
+        ];
+        let mut run = Run::default();
+        for (delta, output) in tables {
+            let targets = delta.iter().map(|&to| u32::from(to)).collect();
+            let dfa = automaton(&alphabet, (targets, output.into()));
+            let mut expected = Tally::default();
+            for (number, atom) in words.iter().rev().enumerate() {
+                let agrees = end(&dfa, atom).is_inside() == (number % 3 == 0);
+                expected.label(agrees, number % 2 == 0);
+                for better in &words {
+                    let ending = Ending::of(end(&dfa, atom), end(&dfa, better));
+                    expected.comparison(ending, Verdict::Worse, number % 2 == 0);
+                }
+            }
+            let seen = script.plan().tally(delta, output, &mut run);
+            assert_eq!(format!("{seen:?}"), format!("{expected:?}"));
+        }
+    }
+}
