@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::{Semaphore, watch};
 
 use super::busy::Busy;
+use super::thinkers::Thinkers;
 use crate::evidence::Stop;
 use crate::session::{Event, Position, Session};
 use crate::store::SessionId;
@@ -86,13 +87,13 @@ impl Foresight {
     }
 
     /// Begins to work out what may follow, unless that was begun already. Trials
-    /// take their turns at `permits` with everybody's work, and are not made where the
+    /// take their turns with the `thinkers`' other work, and are not made where the
     /// machine is busy with what people wait for.
     pub(crate) fn prepare(
         &self,
         id: SessionId,
         session: &Session,
-        permits: &Arc<Semaphore>,
+        thinkers: &Arc<Thinkers>,
         busy: &Arc<Busy>,
     ) {
         // What mends a contradiction is told on the page itself, which waits for it.
@@ -106,25 +107,22 @@ impl Foresight {
             return;
         };
         let mut session = session.fork();
-        let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
+        let (spare, thinkers) = (Arc::clone(&self.spare), Arc::clone(thinkers));
         let busy = Arc::clone(busy);
         tokio::spawn(async move {
             if !is_told {
                 tokio::time::sleep(BREATH).await;
             }
             for event in foreseen {
-                let turn = (
-                    spare.acquire().await,
-                    Arc::clone(&permits).acquire_owned().await,
-                );
+                let turn = (spare.acquire().await, thinkers.permit().await);
                 let is_over = ahead.stale.is_set() || !is_told && busy.cores() > most;
                 let ((Ok(_spare), Ok(permit)), false) = (turn, is_over) else {
                     break;
                 };
-                let stale = ahead.stale.clone();
+                let (stale, thinkers) = (ahead.stale.clone(), Arc::clone(&thinkers));
                 let trial = tokio::task::spawn_blocking(move || {
                     let _permit = permit;
-                    (Trial::of(&session, event, &stale), session)
+                    thinkers.think(move || (Trial::of(&session, event, &stale), session))
                 });
                 match trial.await {
                     Ok((trial, back)) => {

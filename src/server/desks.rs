@@ -15,6 +15,13 @@ use crate::store::SessionId;
 /// How many folded sessions are kept in memory; the others wait in the store.
 const KEPT: usize = 600;
 
+/// So long a session is kept that nobody asks for. Whoever thinks longer about a question
+/// waits a moment for the next, whose session is read and thought through anew.
+const LINGER: Duration = Duration::from_secs(120);
+
+/// So often those that linger are looked for.
+const TIDY: Duration = Duration::from_secs(5);
+
 /// A session's place in memory.
 #[derive(Default)]
 pub(crate) struct Desk {
@@ -137,38 +144,61 @@ impl Drop for Waiting {
     }
 }
 
-/// The desks of the sessions used last.
+/// The desks of the sessions used last, and when that was.
 #[derive(Default)]
 pub(crate) struct Desks(Mutex<Kept>);
 
 #[derive(Default)]
 struct Kept {
-    desks: HashMap<SessionId, (u64, Arc<Desk>)>,
-    clock: u64,
+    desks: HashMap<SessionId, (Instant, Arc<Desk>)>,
+    tidied: Option<Instant>,
+}
+
+impl Kept {
+    /// Takes away what need not be kept. Only desks at which nobody is: two desks of
+    /// one session would be two writers.
+    fn tidy(&mut self, now: Instant) -> Vec<Arc<Desk>> {
+        let is_idle = |desk: &Arc<Desk>| {
+            Arc::strong_count(desk) == 1 && Arc::strong_count(&desk.session) == 1
+        };
+        let mut gone = Vec::new();
+        let is_due = |tidied| now.duration_since(tidied) >= TIDY;
+        if self.tidied.is_none_or(is_due) {
+            self.tidied = Some(now);
+            let lingering = self
+                .desks
+                .extract_if(|_, (used, desk)| now.duration_since(*used) >= LINGER && is_idle(desk));
+            gone.extend(lingering.map(|(_, (_, desk))| desk));
+        }
+        if self.desks.len() > KEPT {
+            let idle = (self.desks.iter()).filter(|(_, (_, desk))| is_idle(desk));
+            let oldest = idle.min_by_key(|(_, (used, _))| *used).map(|(id, _)| *id);
+            gone.extend(
+                oldest
+                    .and_then(|id| self.desks.remove(&id))
+                    .map(|(_, desk)| desk),
+            );
+        }
+        gone
+    }
 }
 
 impl Desks {
     /// The desk of this session.
     pub(crate) fn of(&self, id: SessionId) -> Arc<Desk> {
+        self.at(id, Instant::now())
+    }
+
+    fn at(&self, id: SessionId, now: Instant) -> Arc<Desk> {
         let mut kept = self.kept();
-        kept.clock += 1;
-        let now = kept.clock;
         let desk = {
-            let entry = kept.desks.entry(id).or_default();
+            let entry = (kept.desks.entry(id)).or_insert_with(|| (now, Arc::default()));
             entry.0 = now;
             Arc::clone(&entry.1)
         };
-        if kept.desks.len() > KEPT {
-            // Only desks at which nobody is: two desks of one session would be two
-            // writers.
-            let idle = (kept.desks.iter()).filter(|(_, (_, desk))| {
-                Arc::strong_count(desk) == 1 && Arc::strong_count(&desk.session) == 1
-            });
-            let oldest = idle.min_by_key(|(_, (used, _))| *used).map(|(id, _)| *id);
-            if let Some(oldest) = oldest {
-                kept.desks.remove(&oldest);
-            }
-        }
+        let gone = kept.tidy(now);
+        drop(kept);
+        drop(gone); // which takes longer than others are to wait
         desk
     }
 
@@ -218,6 +248,23 @@ mod tests {
         drop(second);
         assert!(ends(&stop).await);
         drop(at_work);
+    }
+
+    #[test]
+    fn sessions_that_nobody_asks_for_go_from_memory() {
+        let desks = Desks::default();
+        let [gone, at_work, fresh] = [0; 3].map(|_| SessionId::random().unwrap());
+        let then = Instant::now();
+        drop(desks.at(gone, then));
+        let held = desks.at(at_work, then).session();
+        drop(desks.at(fresh, then + TIDY));
+        assert_eq!(desks.len(), 3, "nobody has lingered yet");
+        drop(desks.at(fresh, then + LINGER));
+        assert_eq!(desks.len(), 2);
+        assert!(Arc::ptr_eq(
+            &held,
+            &desks.at(at_work, then + LINGER).session()
+        ));
     }
 
     #[tokio::test]

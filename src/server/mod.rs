@@ -46,6 +46,7 @@ mod standing;
 mod start;
 mod studio;
 mod teaching;
+mod thinkers;
 mod trace;
 mod upload;
 mod views;

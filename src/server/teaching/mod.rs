@@ -16,6 +16,7 @@ use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
 use super::metrics::Metrics;
+use super::thinkers::Thinkers;
 use super::upload::{Pools, Upload};
 use crate::evidence::Stop;
 use crate::session::{Decision, Position, Session, Setup, Task};
@@ -42,8 +43,7 @@ const TURNS: usize = 2;
 pub(crate) struct Teaching {
     archive: Arc<Archive>,
     desks: Arc<Desks>,
-    /// To think.
-    permits: Arc<Semaphore>,
+    thinkers: Arc<Thinkers>,
     /// To read a session from its log, which does not wait for those who think.
     folds: Arc<Semaphore>,
     busy: Arc<Busy>,
@@ -76,7 +76,7 @@ impl Teaching {
                 metrics,
             }),
             desks: Arc::default(),
-            permits: Arc::new(Semaphore::new(TURNS * width.max(1))),
+            thinkers: Arc::new(Thinkers::new(TURNS * width)),
             folds: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),
