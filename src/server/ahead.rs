@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use tokio::sync::{Semaphore, watch};
 
 use super::busy::Busy;
-use super::thinkers::Thinkers;
 use crate::evidence::Stop;
 use crate::session::{Event, Position, Session};
 use crate::store::SessionId;
@@ -87,13 +86,13 @@ impl Foresight {
     }
 
     /// Begins to work out what may follow, unless that was begun already. Trials
-    /// take their turns with the `thinkers`' other work, and are not made where the
+    /// take their turns at `permits` with everybody's work, and are not made where the
     /// machine is busy with what people wait for.
     pub(crate) fn prepare(
         &self,
         id: SessionId,
         session: &Session,
-        thinkers: &Arc<Thinkers>,
+        permits: &Arc<Semaphore>,
         busy: &Arc<Busy>,
     ) {
         // What mends a contradiction is told on the page itself, which waits for it.
@@ -107,22 +106,25 @@ impl Foresight {
             return;
         };
         let mut session = session.fork();
-        let (spare, thinkers) = (Arc::clone(&self.spare), Arc::clone(thinkers));
+        let (spare, permits) = (Arc::clone(&self.spare), Arc::clone(permits));
         let busy = Arc::clone(busy);
         tokio::spawn(async move {
             if !is_told {
                 tokio::time::sleep(BREATH).await;
             }
             for event in foreseen {
-                let turn = (spare.acquire().await, thinkers.permit().await);
+                let turn = (
+                    spare.acquire().await,
+                    Arc::clone(&permits).acquire_owned().await,
+                );
                 let is_over = ahead.stale.is_set() || !is_told && busy.cores() > most;
                 let ((Ok(_spare), Ok(permit)), false) = (turn, is_over) else {
                     break;
                 };
-                let (stale, thinkers) = (ahead.stale.clone(), Arc::clone(&thinkers));
+                let stale = ahead.stale.clone();
                 let trial = tokio::task::spawn_blocking(move || {
                     let _permit = permit;
-                    thinkers.think(move || (Trial::of(&session, event, &stale), session))
+                    (Trial::of(&session, event, &stale), session)
                 });
                 match trial.await {
                     Ok((trial, back)) => {

@@ -46,7 +46,6 @@ mod standing;
 mod start;
 mod studio;
 mod teaching;
-mod thinkers;
 mod trace;
 mod upload;
 mod views;

@@ -16,7 +16,6 @@ use super::error::WebError;
 use super::leases::Leases;
 use super::live::Live;
 use super::metrics::Metrics;
-use super::thinkers::Thinkers;
 use super::upload::{Pools, Upload};
 use crate::evidence::Stop;
 use crate::session::{Decision, Position, Session, Setup, Task};
@@ -43,7 +42,8 @@ const TURNS: usize = 2;
 pub(crate) struct Teaching {
     archive: Arc<Archive>,
     desks: Arc<Desks>,
-    thinkers: Arc<Thinkers>,
+    /// To think.
+    permits: Arc<Semaphore>,
     /// To read a session from its log, which does not wait for those who think.
     folds: Arc<Semaphore>,
     busy: Arc<Busy>,
@@ -76,7 +76,7 @@ impl Teaching {
                 metrics,
             }),
             desks: Arc::default(),
-            thinkers: Arc::new(Thinkers::new(TURNS * width)),
+            permits: Arc::new(Semaphore::new(TURNS * width.max(1))),
             folds: Arc::new(Semaphore::new(width.max(1))),
             busy: Arc::default(),
             foresight: Arc::new(Foresight::new(width)),

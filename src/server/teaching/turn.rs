@@ -8,7 +8,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, oneshot};
+use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, Semaphore, oneshot};
 
 use super::Teaching;
 use crate::evidence::Stop;
@@ -133,10 +133,7 @@ impl Teaching {
         let wait = self.archive.metrics.wait();
         let mut held = desk.session().lock_owned().await;
         let fold = match *held {
-            None => {
-                let permit = Arc::clone(&self.folds).acquire_owned().await;
-                Some(permit.map_err(WebError::internal)?)
-            }
+            None => Some(permit(&self.folds).await?),
             Some(_) => None,
         };
         drop(wait.over());
@@ -164,7 +161,7 @@ impl Teaching {
         });
         let licence = if let Some(wanted) = wanted {
             let wait = self.archive.metrics.wait();
-            let permit = self.thinkers.permit().await.map_err(WebError::internal)?;
+            let permit = permit(&self.permits).await?;
             if is_idle(&desk) {
                 return Ok(None);
             }
@@ -261,7 +258,7 @@ impl Teaching {
         self.live.tell(id, session.entries());
         let shown = view(&session, &position);
         self.foresight
-            .prepare(id, &session, &self.thinkers, &self.busy);
+            .prepare(id, &session, &self.permits, &self.busy);
         *held = Some(session);
         Ok(shown)
     }
@@ -274,7 +271,7 @@ impl Teaching {
         mut licence: Licence,
     ) -> Result<bool, WebError> {
         let mut thought = false;
-        while let Some(event) = (self.thinkers).think(|| session.think_until(&licence.stop)) {
+        while let Some(event) = session.think_until(&licence.stop) {
             // What is left is to wait for the disk: others may think meanwhile.
             drop(licence.permit.take());
             self.archive.append(id, session, &event)?;
@@ -293,8 +290,7 @@ impl Teaching {
         session: &mut Session,
         mut licence: Licence,
     ) -> Result<bool, WebError> {
-        let (lent, stop) = (&mut *session, &licence.stop);
-        let Some(event) = self.thinkers.think(move || lent.further_until(stop)) else {
+        let Some(event) = session.further_until(&licence.stop) else {
             if !licence.stop.is_set() {
                 (licence.desk).found_nothing_beside(session.entries());
             }
@@ -304,6 +300,11 @@ impl Teaching {
         self.archive.append(id, session, &event)?;
         Ok(true)
     }
+}
+
+async fn permit(of: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, WebError> {
+    let permit = Arc::clone(of).acquire_owned().await;
+    permit.map_err(WebError::internal)
 }
 
 /// Runs what may block; a panic is an error.
